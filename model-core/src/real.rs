@@ -1,0 +1,115 @@
+//! The number type of every equation: one small trait, and one file per back-end that implements it.
+//!
+//! | type | elementary functions from | feature |
+//! |---|---|---|
+//! | `f64`, `f32` | the standard library | `std` |
+//! | `f64`, `f32` | the `libm` crate, where `std` is off | `libm` |
+//! | [`Portable<f64>`](Portable), [`Portable<f32>`](Portable) | plain arithmetic for `exp` and `ln` (same bits on every machine, vectorises) | either |
+//! | `micromath::F32` | the `micromath` crate: rough | `micromath` |
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+#[cfg(all(feature = "libm", not(feature = "std")))]
+mod libm;
+#[cfg(any(feature = "std", feature = "libm"))]
+mod portable;
+#[cfg(feature = "std")]
+mod std;
+
+#[cfg(any(feature = "std", feature = "libm"))]
+pub use portable::Portable;
+
+/// A real number, as far as the equations of this crate need one.
+///
+/// Comparisons are IEEE: everything compared with NaN is false, and the domain checks are written so that NaN fails them.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no elementary functions here",
+    note = "enable feature `std` or `libm` of leafbrdf-core for f32 and f64, or `micromath` for micromath::F32"
+)]
+pub trait Real:
+    Copy
+    + Debug
+    + PartialOrd
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+{
+    /// 0.
+    const ZERO: Self;
+    /// 1/2.
+    const HALF: Self;
+    /// 1.
+    const ONE: Self;
+    /// 2.
+    const TWO: Self;
+    /// π.
+    const PI: Self;
+    /// Distance from 1 to the next larger number.
+    const EPSILON: Self;
+    /// The largest finite number.
+    const MAX: Self;
+
+    /// The number nearest to `x`.
+    fn lit(x: f64) -> Self;
+    /// The same number in double precision (exact for `f32`).
+    fn to_f64(self) -> f64;
+    /// √x; NaN for x < 0.
+    fn sqrt(self) -> Self;
+    /// eˣ.
+    fn exp(self) -> Self;
+    /// Natural logarithm.
+    fn ln(self) -> Self;
+    /// Sine and cosine of an angle in radians.
+    fn sin_cos(self) -> (Self, Self);
+    /// Tangent of an angle in radians.
+    fn tan(self) -> Self;
+    /// Arc sine, radians; NaN outside [−1, 1].
+    fn asin(self) -> Self;
+    /// |x|.
+    fn abs(self) -> Self;
+
+    /// Sine of an angle in radians.
+    #[inline]
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+
+    /// Cosine of an angle in radians.
+    #[inline]
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+
+    /// x².
+    #[inline(always)]
+    fn squared(self) -> Self {
+        self * self
+    }
+
+    /// The smaller of two numbers; `other` where either is NaN.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+
+    /// The larger of two numbers; `other` where either is NaN.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+
+    /// Neither infinite nor NaN.
+    #[inline(always)]
+    fn is_finite(self) -> bool {
+        self.abs() <= Self::MAX
+    }
+}
