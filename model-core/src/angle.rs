@@ -32,11 +32,7 @@ fn second_word<T: Real>((first, second): (f64, f64)) -> T {
 /// Twice the significant bits' half, plus one: 2¹² + 1 for f32, 2²⁷ + 1 for f64 (Dekker 1971, Veltkamp's splitting).
 #[inline(always)]
 fn splitter<T: Real>() -> T {
-    if T::EPSILON < T::lit(1e-10) {
-        T::lit(134_217_729.0)
-    } else {
-        T::lit(4_097.0)
-    }
+    if T::EPSILON < T::lit(1e-10) { T::lit(134_217_729.0) } else { T::lit(4_097.0) }
 }
 
 /// a · b = product + error, exactly (Dekker 1971), without a fused multiply-add.
@@ -58,10 +54,7 @@ impl<T: Real> Angle<T> {
     #[inline]
     pub fn from_degrees(degrees: T) -> Self {
         let (hi, rounding) = two_product(degrees, T::lit(RADIANS_PER_DEGREE.0));
-        Angle {
-            hi,
-            lo: rounding + degrees * second_word(RADIANS_PER_DEGREE),
-        }
+        Angle { hi, lo: rounding + degrees * second_word(RADIANS_PER_DEGREE) }
     }
 
     /// From radians, taken as exact.

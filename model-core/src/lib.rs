@@ -5,11 +5,25 @@
 extern crate std;
 
 mod angle;
+pub mod diffuse;
 mod error;
+pub mod facet;
+pub mod fresnel;
+mod geometry;
+mod leaf;
+pub mod masking;
 pub mod real;
+mod specular;
 
 pub use angle::Angle;
+pub use diffuse::{Diffuse, Lambert};
 pub use error::DomainError;
+pub use facet::{Beckmann, Facets};
+pub use fresnel::{Absorbing, Dielectric, Index, Polarized};
+pub use geometry::{DirectionCosines, Geometry};
+pub use leaf::{Leaf, LeafGradient};
+pub use masking::{Masking, VCavity};
 #[cfg(any(feature = "std", feature = "libm"))]
 pub use real::Portable;
 pub use real::Real;
+pub use specular::{Normalization, SpecularGradient, Surface};

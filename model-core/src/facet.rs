@@ -1,0 +1,70 @@
+//! D: how facet normals are spread around the leaf normal (Eq. 9).
+
+use crate::Real;
+
+/// A distribution of facet slopes: the density D(α; σ) of facet normals, in sr⁻¹, with ∫ D cosα dΩ = 1.
+pub trait Facets<T: Real>: Copy {
+    /// D(α; σ).
+    fn density(self, tan2_alpha: T, sigma: T) -> T;
+
+    /// D and ∂D/∂σ.
+    fn density_with_slope(self, tan2_alpha: T, sigma: T) -> (T, T);
+}
+
+/// The paper's distribution (Eq. 9): slopes are Gaussian, D ∝ exp(−tan²α/σ²)/(σ² cos⁴α).
+///
+/// D falls monotonically with α exactly while σ ≤ 1/√2 (the paper says σ < 0.7).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Beckmann;
+
+/// Beckmann's facet density `D(α; σ)`, in sr⁻¹, normalised: ∫ D cosα dΩ = 1 over the hemisphere.
+///
+/// Eq. 9 with c = 1/π. Takes tan²α, which [`Geometry`](crate::Geometry) gets from the half vector, because 1 − cos²α
+/// loses digits near the specular direction.
+///
+/// - `tan2_alpha`: squared tangent of the facet tilt, ≥ 0, unitless.
+/// - `sigma`: slope roughness, > 0, unitless: rms slope over both axes (the one-axis rms slope is smaller by √2);
+///   checked by [`Surface::new`](crate::Surface::new).
+///
+/// Facing the viewer squarely, only the prefactor is left:
+///
+/// ```
+/// let d = leafbrdf_core::facet::beckmann(0.0_f64, 0.5);
+/// assert!((d - 4.0 / core::f64::consts::PI).abs() < 1e-15);
+/// ```
+#[inline(always)]
+pub fn beckmann<T: Real>(tan2_alpha: T, sigma: T) -> T {
+    let sigma2 = sigma.squared();
+
+    // 1 / cos⁴α = (1 + tan²α)²
+    let sec4_alpha = (T::ONE + tan2_alpha).squared();
+
+    //      exp(−tan²α / σ²)
+    // D = ──────────────────
+    //       π σ² cos⁴α
+    (-tan2_alpha / sigma2).exp() * sec4_alpha / (T::PI * sigma2)
+}
+
+/// ∂ ln D/∂σ and ∂² ln D/∂σ² of Beckmann's density: 2 tan²α/σ³ − 2/σ and 2/σ² − 6 tan²α/σ⁴.
+#[inline(always)]
+pub fn beckmann_log_slopes<T: Real>(tan2_alpha: T, sigma: T) -> (T, T) {
+    let inv_sigma = T::ONE / sigma;
+    // in units of 1/σ: x = tan²α/σ²
+    let x = tan2_alpha * inv_sigma.squared();
+    (T::TWO * (x - T::ONE) * inv_sigma, (T::TWO - T::lit(6.0) * x) * inv_sigma.squared())
+}
+
+impl<T: Real> Facets<T> for Beckmann {
+    #[inline(always)]
+    fn density(self, tan2_alpha: T, sigma: T) -> T {
+        beckmann(tan2_alpha, sigma)
+    }
+
+    #[inline(always)]
+    fn density_with_slope(self, tan2_alpha: T, sigma: T) -> (T, T) {
+        let density = beckmann(tan2_alpha, sigma);
+        let (log_slope, _) = beckmann_log_slopes(tan2_alpha, sigma);
+        // far in the tail D underflows to 0 before the logarithmic slope overflows
+        (density, density * log_slope)
+    }
+}
