@@ -34,7 +34,8 @@ pub struct Beckmann;
 /// ```
 #[inline(always)]
 pub fn beckmann<T: Real>(tan2_alpha: T, sigma: T) -> T {
-    let sigma2 = sigma.squared();
+    // one division, and only by σ²: a loop over directions takes it out
+    let inv_sigma2 = T::ONE / sigma.squared();
 
     // 1 / cos⁴α = (1 + tan²α)²
     let sec4_alpha = (T::ONE + tan2_alpha).squared();
@@ -42,7 +43,7 @@ pub fn beckmann<T: Real>(tan2_alpha: T, sigma: T) -> T {
     //      exp(−tan²α / σ²)
     // D = ──────────────────
     //       π σ² cos⁴α
-    (-tan2_alpha / sigma2).exp() * sec4_alpha / (T::PI * sigma2)
+    (-tan2_alpha * inv_sigma2).exp() * sec4_alpha * (inv_sigma2 * T::lit(core::f64::consts::FRAC_1_PI))
 }
 
 /// ∂ ln D/∂σ and ∂² ln D/∂σ² of Beckmann's density: 2 tan²α/σ³ − 2/σ and 2/σ² − 6 tan²α/σ⁴.

@@ -79,12 +79,6 @@ impl<T: Real> Dielectric<T> {
         Ok(Dielectric { n })
     }
 
-    /// The index n, where the caller has checked 1 ≤ n ≤ 10⁴ (a solver inside its bounds): no check.
-    #[inline(always)]
-    pub(crate) fn trusted(n: T) -> Self {
-        Dielectric { n }
-    }
-
     /// n.
     #[inline(always)]
     pub fn n(self) -> T {

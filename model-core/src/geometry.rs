@@ -11,6 +11,7 @@ pub struct Geometry<T> {
     cos_theta_s: T,
     cos_theta_v: T,
     cos_theta_a: T,
+    sin2_theta_a: T,
     tan2_alpha: T,
 }
 
@@ -57,11 +58,13 @@ impl<T: Real> Geometry<T> {
         }
         let (sin_half, cos_half) = theta_s.half_difference(theta_v).sin_cos();
         let tan_half_difference = sin_half / cos_half;
-        let cos_half_phi = phi_v.scaled(T::HALF).cos();
+        let (sin_half_phi, cos_half_phi) = phi_v.scaled(T::HALF).sin_cos();
+        let sin_sin = sin_theta_s * sin_theta_v;
         let sum = cos_theta_s + cos_theta_v;
-        let tan2_alpha = tan_half_difference.squared()
-            + T::lit(4.0) * ((sin_theta_s * sin_theta_v) * cos_half_phi.squared()) / sum.squared();
-        Ok(Self::from_half_vector(cos_theta_s, cos_theta_v, tan2_alpha))
+        let tan2_alpha =
+            tan_half_difference.squared() + T::lit(4.0) * (sin_sin * cos_half_phi.squared()) / sum.squared();
+        let sin2_theta_a = sin_half.squared() + sin_sin * sin_half_phi.squared();
+        Ok(Self::from_half_vector(cos_theta_s, cos_theta_v, tan2_alpha, sin2_theta_a))
     }
 
     /// From sines and cosines: two square roots and two divisions fewer than from angles, for firmware that keeps its
@@ -81,18 +84,24 @@ impl<T: Real> Geometry<T> {
             return Err(DomainError::new("cos_phi_v", "-1 ≤ cos phi_v ≤ 1"));
         }
         let sum = cos_theta_s + cos_theta_v;
-        let h = (sin_theta_s - sin_theta_v).squared() + T::TWO * ((sin_theta_s * sin_theta_v) * (T::ONE + cos_phi_v));
-        Ok(Self::from_half_vector(cos_theta_s, cos_theta_v, h / sum.squared()))
+        let sin_sin = sin_theta_s * sin_theta_v;
+        let sin_difference2 = (sin_theta_s - sin_theta_v).squared();
+        let h = sin_difference2 + T::TWO * (sin_sin * (T::ONE + cos_phi_v));
+        // 4 sin²θ_a = |s − v|²
+        let chord2 =
+            (cos_theta_s - cos_theta_v).squared() + sin_difference2 + T::TWO * (sin_sin * (T::ONE - cos_phi_v));
+        Ok(Self::from_half_vector(cos_theta_s, cos_theta_v, h / sum.squared(), T::lit(0.25) * chord2))
     }
 
     #[inline(always)]
-    fn from_half_vector(cos_theta_s: T, cos_theta_v: T, tan2_alpha: T) -> Self {
+    fn from_half_vector(cos_theta_s: T, cos_theta_v: T, tan2_alpha: T, sin2_theta_a: T) -> Self {
         let cos_theta_a = T::HALF * (cos_theta_s + cos_theta_v) * (T::ONE + tan2_alpha).sqrt();
         Geometry {
             cos_theta_s,
             cos_theta_v,
             // cos θ_a ≤ 1; absorbs rounding only, near the retro-direction
             cos_theta_a: cos_theta_a.min(T::ONE),
+            sin2_theta_a,
             tan2_alpha,
         }
     }
@@ -129,11 +138,11 @@ impl<T: Real> Geometry<T> {
 
     /// θ_a in radians.
     pub fn theta_a(&self) -> T {
-        // cos 2θ_a = 1 − 2 sin²θ_a; π/2 − asin keeps the digits near grazing, the other branch near 0
+        // from the smaller of sine and cosine: the arc sine of the other one has no digits left
         if self.cos_theta_a < T::lit(core::f64::consts::FRAC_1_SQRT_2) {
             T::HALF * T::PI - self.cos_theta_a.asin()
         } else {
-            ((T::ONE - self.cos_theta_a) * (T::ONE + self.cos_theta_a)).max(T::ZERO).sqrt().asin()
+            self.sin2_theta_a.sqrt().asin()
         }
     }
 }

@@ -1,8 +1,8 @@
 //! BRDF_spec = F · D · G / (4 cosθ_s cosθ_v), under either of the two normalisations (Eqs 6, 10).
 
-use crate::facet::{Beckmann, Facets};
+use crate::facet::{Beckmann, Facets, beckmann, beckmann_log_slopes};
 use crate::fresnel::{Absorbing, Dielectric, Index};
-use crate::masking::{Masking, VCavity};
+use crate::masking::{Masking, VCavity, v_cavity};
 use crate::{DomainError, Geometry, Real};
 
 /// The constant K of Eq. 10, BRDF_spec = F G exp(−tan²α/σ²) / (K cosθ_s cosθ_v σ² cos⁴α): two conventions exist.
@@ -53,6 +53,70 @@ pub struct SpecularGradient<T> {
     pub d_n: T,
     /// ∂BRDF_spec/∂σ, sr⁻¹.
     pub d_sigma: T,
+}
+
+/// BRDF_spec with its first and second derivatives with respect to n and σ, for Newton's method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpecularHessian<T> {
+    /// BRDF_spec, sr⁻¹.
+    pub value: T,
+    /// ∂/∂n.
+    pub d_n: T,
+    /// ∂/∂σ.
+    pub d_sigma: T,
+    /// ∂²/∂n².
+    pub d_n_n: T,
+    /// ∂²/∂n∂σ.
+    pub d_n_sigma: T,
+    /// ∂²/∂σ².
+    pub d_sigma_sigma: T,
+}
+
+/// All that one pair of directions contributes to the paper's BRDF_spec: computed once, shared by every wavelength and
+/// every trial value of n and σ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DirectionTerms<T> {
+    /// cos θ_a.
+    pub cos_theta_a: T,
+    /// tan²α.
+    pub tan2_alpha: T,
+    /// G/(K/π cosθ_s cosθ_v): BRDF_spec = F · D · weight, unitless.
+    pub weight: T,
+}
+
+impl<T: Real> DirectionTerms<T> {
+    /// The terms of a direction under a convention for K, masking by V-cavities (Eq. 7).
+    pub fn new(geometry: &Geometry<T>, normalization: Normalization) -> Self {
+        DirectionTerms {
+            cos_theta_a: geometry.cos_theta_a(),
+            tan2_alpha: geometry.tan2_alpha(),
+            weight: v_cavity(geometry) * projection(geometry, normalization),
+        }
+    }
+
+    /// BRDF_spec in sr⁻¹ at this direction (Eq. 10); n and σ as in [`Surface::new`], checked by the caller.
+    #[inline(always)]
+    pub fn brdf(&self, index: Dielectric<T>, sigma: T) -> T {
+        index.fresnel(self.cos_theta_a) * (beckmann(self.tan2_alpha, sigma) * self.weight)
+    }
+
+    /// BRDF_spec with its first and second derivatives, one pass.
+    #[inline(always)]
+    pub fn brdf_to_second_order(&self, index: Dielectric<T>, sigma: T) -> SpecularHessian<T> {
+        let [f, f_n, f_nn] = index.fresnel_to_second_order(self.cos_theta_a);
+        let d = beckmann(self.tan2_alpha, sigma) * self.weight;
+        let (log_slope, log_curvature) = beckmann_log_slopes(self.tan2_alpha, sigma);
+        let d_sigma = d * log_slope;
+        SpecularHessian {
+            value: f * d,
+            d_n: f_n * d,
+            d_sigma: f * d_sigma,
+            d_n_n: f_nn * d,
+            d_n_sigma: f_n * d_sigma,
+            // D'' = D ((ln D)'² + (ln D)'')
+            d_sigma_sigma: f * (d_sigma * log_slope + d * log_curvature),
+        }
+    }
 }
 
 /// A leaf surface: refractive index, roughness and the normalisation they belong to.
@@ -138,7 +202,7 @@ impl<T: Real, I: Index<T>, D: Facets<T>, G: Masking<T>> Surface<T, I, D, G> {
         let f = self.index.fresnel(geometry.cos_theta_a());
         let d = self.facets.density(geometry.tan2_alpha(), self.sigma);
         let g = self.masking.masking(geometry, self.sigma);
-        f * (d * (g * self.projection(geometry)))
+        f * (d * (g * projection(geometry, self.normalization)))
     }
 
     /// BRDF_spec and its exact derivatives with respect to n and σ, one pass.
@@ -147,7 +211,7 @@ impl<T: Real, I: Index<T>, D: Facets<T>, G: Masking<T>> Surface<T, I, D, G> {
         let (f, f_n) = self.index.fresnel_with_slope(geometry.cos_theta_a());
         let (d, d_sigma) = self.facets.density_with_slope(geometry.tan2_alpha(), self.sigma);
         let (g, g_sigma) = self.masking.masking_with_slope(geometry, self.sigma);
-        let projection = self.projection(geometry);
+        let projection = projection(geometry, self.normalization);
         let weight = g * projection;
         SpecularGradient {
             value: f * (d * weight),
@@ -155,10 +219,10 @@ impl<T: Real, I: Index<T>, D: Facets<T>, G: Masking<T>> Surface<T, I, D, G> {
             d_sigma: f * (d_sigma * weight + d * (g_sigma * projection)),
         }
     }
+}
 
-    /// 4π/K · 1/(4 cosθ_s cosθ_v).
-    #[inline(always)]
-    fn projection(&self, geometry: &Geometry<T>) -> T {
-        self.normalization.factor::<T>() / (T::lit(4.0) * (geometry.cos_theta_s() * geometry.cos_theta_v()))
-    }
+/// 4π/K · 1/(4 cosθ_s cosθ_v).
+#[inline(always)]
+fn projection<T: Real>(geometry: &Geometry<T>, normalization: Normalization) -> T {
+    normalization.factor::<T>() / (T::lit(4.0) * (geometry.cos_theta_s() * geometry.cos_theta_v()))
 }
