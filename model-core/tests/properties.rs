@@ -95,7 +95,7 @@ proptest! {
         let surface = Surface::new(n, sigma).unwrap();
         let (a, b) = (surface.brdf(&geometry(s, v, phi)), surface.brdf(&geometry(s, v, phi - 360.0)));
         let exponent = geometry::<f64>(s, v, phi).tan2_alpha() / (sigma * sigma);
-        prop_assert!((a - b).abs() <= 1e-14 * (10.0 + exponent) * a, "{a} {b}");
+        prop_assert!((a - b).abs() <= 1e-14 * (10.0 + exponent) * a + 1e-300, "{a} {b}");
     }
 
     // Complex and real index meet at κ = 0. 64 ε: two different orders of the same operations.
@@ -140,6 +140,8 @@ proptest! {
     fn density_falls_with_tilt_exactly_while_sigma_is_at_most_one_over_root_two(sigma in 0.01..2.0_f64, tan2 in 0.0..50.0_f64) {
         let step = 1e-3;
         if sigma <= core::f64::consts::FRAC_1_SQRT_2 {
+            // below the normal numbers D is a staircase of rounding
+            prop_assume!(facet::beckmann(tan2, sigma) > 1e-290);
             prop_assert!(facet::beckmann(tan2 + step, sigma) <= facet::beckmann(tan2, sigma));
         } else if sigma > 0.708 {
             // just above, the top of the density has moved away from the leaf normal: t* = 2σ² − 1 > 0
@@ -210,6 +212,8 @@ proptest! {
         prop_assert!((hessian.d_sigma - gradient.d_sigma).abs() <= 8.0 * f64::EPSILON * gradient.d_sigma.abs() + 1e-300);
 
         let exponent = g.tan2_alpha() / (sigma * sigma);
+        // farther out the truncation of the difference, (exponent · step)², outgrows the bound
+        prop_assume!(exponent < 30.0);
         let scale = (1.0 + exponent).powi(4) * hessian.value;
         let h = 1e-5 * (n - 1.0);
         let (up, down) = (at(n + h, sigma), at(n - h, sigma));
