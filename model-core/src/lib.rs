@@ -5,6 +5,7 @@
 extern crate std;
 
 mod angle;
+mod dhrf;
 pub mod diffuse;
 mod error;
 pub mod facet;
@@ -16,6 +17,7 @@ pub mod real;
 mod specular;
 
 pub use angle::Angle;
+pub use dhrf::{DhrfGradient, Grade, Illumination};
 pub use diffuse::{Diffuse, Lambert};
 pub use error::DomainError;
 pub use facet::{Beckmann, Facets};
@@ -26,4 +28,4 @@ pub use masking::{Masking, VCavity};
 #[cfg(any(feature = "std", feature = "libm"))]
 pub use real::Portable;
 pub use real::Real;
-pub use specular::{Normalization, SpecularGradient, Surface};
+pub use specular::{DirectionTerms, Normalization, SpecularGradient, SpecularHessian, Surface};
