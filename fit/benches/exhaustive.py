@@ -359,6 +359,7 @@ def run_compare(args):
         best = {float(r["wavelength_nm"]): float(r["chi2"]) for r in read_columns(reference)}
         ours = {float(r["wavelength_nm"]): r for r in read_columns(fitted)}
         sum_ours = sum_best = 0.0
+        values = 0
         for i, w in enumerate(wavelength):
             if w not in ours:
                 rows.append((leaf, w, math.inf, math.nan, math.nan, math.nan))
@@ -375,9 +376,9 @@ def run_compare(args):
             no_se += any(not math.isfinite(number(r.get(name))) for name in ("k_l_se", "n_se", "sigma_se"))
             ratio = chi2 / best[w]
             rows.append((leaf, w, math.inf if math.isnan(ratio) else ratio, k, n, sigma))
-            sum_ours, sum_best = sum_ours + chi2, sum_best + best[w]
-        rmse.append(math.sqrt(sum_ours / y.size))
-        oracle_rmse.append(math.sqrt(sum_best / y.size))
+            sum_ours, sum_best, values = sum_ours + chi2, sum_best + best[w], values + y.shape[1]
+        rmse.append(math.sqrt(sum_ours / max(values, 1)))
+        oracle_rmse.append(math.sqrt(sum_best / max(values, 1)))
     if not rows:
         sys.exit(f"no leaf has both {args.out}/{args.normalization}/LEAF.csv and {args.fits}/LEAF/bands.csv")
     ratio = np.array([r[2] for r in rows])
