@@ -1,0 +1,22 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+// Small fixed matrices are indexed by row and column, as in the equations.
+#![allow(clippy::needless_range_loop)]
+
+#[cfg(feature = "std")]
+extern crate std;
+
+pub mod band;
+mod bounds;
+mod error;
+#[cfg(feature = "std")]
+mod leaf_bands;
+mod linear;
+pub mod solver;
+
+pub use band::{Band, BandFit, BandOptions, BandSolver, Directions, Identifiability, Start, Valley};
+pub use bounds::{AtBound, BandBounds, Interval};
+pub use error::FitError;
+#[cfg(feature = "std")]
+pub use leaf_bands::{BandResult, LeafBandsOptions, LeafData, fit_bands, why_no_error};
+pub use solver::Termination;

@@ -1,0 +1,237 @@
+//! Bounded minimisation by Newton steps that stay inside the box (Coleman and Li 1996, an interior trust region).
+//!
+//! Each step solves M s = −g with M = H + diag((|g_i| + λ)/v_i), v_i being the distance to the bound that −g_i points at:
+//! a parameter that is driven against its bound approaches it quadratically and never leaves the others behind, as it
+//! does where parameters are clamped. H is the exact Hessian where that is positive definite, else Gauss and Newton's.
+
+use leafbrdf_core::Real;
+
+use crate::bounds::{AtBound, Interval};
+
+/// The objective at one point: cost, gradient, exact Hessian, and its Gauss–Newton part (positive semidefinite).
+#[derive(Clone, Copy, Debug)]
+pub struct Evaluation<T, const P: usize> {
+    /// The cost, ≥ 0.
+    pub cost: T,
+    /// ∂cost/∂x.
+    pub gradient: [T; P],
+    /// ∂²cost/∂x².
+    pub hessian: [[T; P]; P],
+    /// The part of the Hessian without the residuals' own curvature.
+    pub gauss_newton: [[T; P]; P],
+}
+
+/// A cost with derivatives, to be minimised over P parameters.
+pub trait Objective<T, const P: usize> {
+    /// Cost and derivatives at `x`, which lies inside the bounds.
+    fn evaluate(&mut self, x: &[T; P]) -> Evaluation<T, P>;
+}
+
+/// Why a search ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Termination {
+    /// The next step would lower the cost by less than the tolerance.
+    Converged,
+    /// No step, however short, lowers the cost any more: rounding is all that is left.
+    AtRounding,
+    /// The limit on iterations was reached first.
+    MaxIterations,
+}
+
+impl Termination {
+    /// A minimum was found, to the tolerance or to rounding.
+    pub fn converged(self) -> bool {
+        self != Termination::MaxIterations
+    }
+}
+
+/// When to stop, and how far to go at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolverOptions<T, const P: usize> {
+    /// Stop where the predicted decrease is below this share of the cost.
+    pub tolerance: T,
+    /// The most steps, accepted or not.
+    pub max_iterations: u32,
+    /// The longest step in each parameter.
+    pub max_step: [T; P],
+}
+
+/// Where a search ended.
+#[derive(Clone, Copy, Debug)]
+pub struct Minimum<T, const P: usize> {
+    /// The parameters.
+    pub x: [T; P],
+    /// Cost and derivatives there.
+    pub evaluation: Evaluation<T, P>,
+    /// Which parameters sit at a bound.
+    pub at_bound: [AtBound; P],
+    /// Steps taken, accepted or not.
+    pub iterations: u32,
+    /// Why the search ended.
+    pub termination: Termination,
+}
+
+/// How near to a bound, in widths of the interval, a parameter that is pushed outwards counts as sitting there.
+const BOUND_MARGIN: f64 = 1e-5;
+
+/// Minimises `objective` over the box from `start` (moved inside where it touches a bound).
+///
+/// The model is never evaluated outside the bounds, and the cost returned is never above that of the start.
+#[inline(always)]
+pub fn minimize<T: Real, const P: usize, O: Objective<T, P>>(
+    objective: &mut O,
+    bounds: &[Interval<T>; P],
+    start: &[T; P],
+    options: &SolverOptions<T, P>,
+) -> Minimum<T, P> {
+    let mut x = *start;
+    for (x, bound) in x.iter_mut().zip(bounds) {
+        *x = bound.inside(*x, T::lit(1e-3));
+    }
+    let mut here = objective.evaluate(&x);
+    let mut lambda = T::ZERO;
+    let mut iterations = 0;
+    let mut termination = Termination::MaxIterations;
+
+    while iterations < options.max_iterations {
+        iterations += 1;
+        let distance = distances(&x, &here.gradient, bounds);
+        let Some(step) = propose(&here, &distance, &mut lambda) else {
+            termination = Termination::AtRounding;
+            break;
+        };
+        let (trial, step) = shorten(&x, &step, bounds, &options.max_step);
+        let predicted = predicted_decrease(&here, &step, &distance);
+        if predicted <= options.tolerance * here.cost {
+            termination = Termination::Converged;
+            break;
+        }
+        let there = objective.evaluate(&trial);
+        let actual = here.cost - there.cost;
+        let largest = largest_abs(&here.gradient);
+        // NaN in the cost fails this test and shortens the step
+        if actual > T::ZERO {
+            let ratio = actual / predicted;
+            if ratio > T::lit(0.5) {
+                lambda *= T::lit(0.1);
+                if lambda < T::lit(1e-4) * largest {
+                    lambda = T::ZERO;
+                }
+            } else if ratio < T::lit(0.1) {
+                lambda = (T::lit(4.0) * lambda).max(T::lit(0.1) * largest);
+            }
+            x = trial;
+            here = there;
+        } else {
+            lambda = (T::lit(8.0) * lambda).max(T::lit(0.25) * largest);
+            if predicted <= T::lit(64.0) * T::EPSILON * here.cost || !(lambda < T::lit(1e12) * largest) {
+                termination = Termination::AtRounding;
+                break;
+            }
+        }
+    }
+
+    let (x, here, at_bound) = settle(objective, bounds, x, here);
+    Minimum { x, evaluation: here, at_bound, iterations, termination }
+}
+
+/// Distance of each parameter to the bound that the descent direction points at.
+#[inline(always)]
+fn distances<T: Real, const P: usize>(x: &[T; P], gradient: &[T; P], bounds: &[Interval<T>; P]) -> [T; P] {
+    core::array::from_fn(|i| {
+        if gradient[i] < T::ZERO { bounds[i].upper - x[i] } else { x[i] - bounds[i].lower }
+    })
+}
+
+/// The step −M⁻¹g, or `None` where even a strongly damped M is not positive definite (nothing finite is left).
+#[inline(always)]
+fn propose<T: Real, const P: usize>(here: &Evaluation<T, P>, distance: &[T; P], lambda: &mut T) -> Option<[T; P]> {
+    let largest = largest_abs(&here.gradient);
+    for attempt in 0..24_u32 {
+        let curvature = if attempt == 0 { &here.hessian } else { &here.gauss_newton };
+        let mut m = *curvature;
+        for i in 0..P {
+            m[i][i] += (here.gradient[i].abs() + *lambda) / distance[i];
+        }
+        if let Some(step) = crate::linear::solve_spd(&m, &here.gradient) {
+            return Some(step.map(|s| -s));
+        }
+        if attempt > 0 {
+            *lambda = (T::lit(8.0) * *lambda).max(T::lit(1e-3) * largest);
+        }
+    }
+    None
+}
+
+/// The step cut to the longest allowed one and to 99.5 % of the way to the nearest bound, and the point it leads to.
+#[inline(always)]
+fn shorten<T: Real, const P: usize>(
+    x: &[T; P],
+    step: &[T; P],
+    bounds: &[Interval<T>; P],
+    max_step: &[T; P],
+) -> ([T; P], [T; P]) {
+    let mut scale = T::ONE;
+    for i in 0..P {
+        let s = step[i];
+        let room = if s < T::ZERO { x[i] - bounds[i].lower } else { bounds[i].upper - x[i] };
+        let allowed = (T::lit(0.995) * room).min(max_step[i]);
+        if s.abs() * scale > allowed {
+            scale = allowed / s.abs();
+        }
+    }
+    let step = step.map(|s| s * scale);
+    (core::array::from_fn(|i| bounds[i].clip(x[i] + step[i])), step)
+}
+
+/// −(gᵀs + ½ sᵀ(H + diag(|g|/v))s), with the Hessian that made the step where it is convex along it.
+#[inline(always)]
+fn predicted_decrease<T: Real, const P: usize>(here: &Evaluation<T, P>, step: &[T; P], distance: &[T; P]) -> T {
+    let mut slope = T::ZERO;
+    let mut exact = T::ZERO;
+    let mut approximate = T::ZERO;
+    for i in 0..P {
+        slope += here.gradient[i] * step[i];
+        let box_term = here.gradient[i].abs() / distance[i] * step[i].squared();
+        exact += box_term;
+        approximate += box_term;
+        for j in 0..P {
+            exact += here.hessian[i][j] * step[i] * step[j];
+            approximate += here.gauss_newton[i][j] * step[i] * step[j];
+        }
+    }
+    let curvature = if exact > T::ZERO { exact } else { approximate };
+    -(slope + T::HALF * curvature)
+}
+
+#[inline(always)]
+fn largest_abs<T: Real, const P: usize>(values: &[T; P]) -> T {
+    values.iter().fold(T::ZERO, |most, x| most.max(x.abs()))
+}
+
+/// Parameters that the search has driven to within a hair of a bound are set on it, if the cost agrees.
+#[inline(always)]
+fn settle<T: Real, const P: usize, O: Objective<T, P>>(
+    objective: &mut O,
+    bounds: &[Interval<T>; P],
+    x: [T; P],
+    here: Evaluation<T, P>,
+) -> ([T; P], Evaluation<T, P>, [AtBound; P]) {
+    let mut at_bound = [AtBound::Free; P];
+    let mut settled = x;
+    for i in 0..P {
+        let margin = T::lit(BOUND_MARGIN) * bounds[i].width();
+        if here.gradient[i] < T::ZERO && bounds[i].upper - x[i] <= margin {
+            at_bound[i] = AtBound::Upper;
+            settled[i] = bounds[i].upper;
+        } else if here.gradient[i] > T::ZERO && x[i] - bounds[i].lower <= margin {
+            at_bound[i] = AtBound::Lower;
+            settled[i] = bounds[i].lower;
+        }
+    }
+    if at_bound.iter().all(|at| *at == AtBound::Free) {
+        return (x, here, at_bound);
+    }
+    let there = objective.evaluate(&settled);
+    if there.cost <= here.cost { (settled, there, at_bound) } else { (x, here, [AtBound::Free; P]) }
+}
