@@ -65,7 +65,7 @@ impl<T: Real> Facets<T> for Beckmann {
     fn density_with_slope(self, tan2_alpha: T, sigma: T) -> (T, T) {
         let density = beckmann(tan2_alpha, sigma);
         let (log_slope, _) = beckmann_log_slopes(tan2_alpha, sigma);
-        // far in the tail D underflows to 0 before the logarithmic slope overflows
-        (density, density * log_slope)
+        // Far in the tail D underflows to 0 before the logarithmic slope overflows, and 0 · ∞ would be NaN.
+        (density, if density > T::ZERO { density * log_slope } else { T::ZERO })
     }
 }

@@ -216,7 +216,8 @@ impl<T: Real, I: Index<T>, D: Facets<T>, G: Masking<T>> Surface<T, I, D, G> {
         SpecularGradient {
             value: f * (d * weight),
             d_n: f_n * (d * weight),
-            d_sigma: f * (d_sigma * weight + d * (g_sigma * projection)),
+            // F first: where there is no reflection there is no slope, however steep the lobe (0 · ∞ would be NaN)
+            d_sigma: (f * weight) * d_sigma + (f * projection) * (d * g_sigma),
         }
     }
 }

@@ -1,0 +1,29 @@
+//! The laws that must hold on whatever input: one public function a fuzz target, taking any bytes and panicking where a
+//! law is broken.
+//!
+//! `cargo fuzz run --features libfuzzer TARGET` (or `just fuzz`) looks for new input; `cargo test -p leafbrdf-fuzz`
+//! replays the files in `corpus/`, the regressions among them, on stable Rust. Both call these functions.
+
+mod dhrf;
+mod gradient;
+mod input;
+mod mirror;
+mod surface;
+
+pub use dhrf::dhrf;
+pub use gradient::gradient;
+pub use input::Input;
+pub(crate) use mirror::Mirror;
+pub use surface::{surface_complex, surface_f32, surface_f64};
+
+/// A function that panics where its laws are broken on the bytes given.
+pub type Target = fn(&[u8]);
+
+/// Every target by its name, for the replay.
+pub const TARGETS: &[(&str, Target)] = &[
+    ("surface_f64", surface_f64),
+    ("surface_f32", surface_f32),
+    ("surface_complex", surface_complex),
+    ("gradient", gradient),
+    ("dhrf", dhrf),
+];
