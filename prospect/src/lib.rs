@@ -1,0 +1,24 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+
+#[cfg(feature = "std")]
+extern crate std;
+
+mod absorption;
+mod error;
+pub mod expint;
+pub mod interface;
+mod kernel;
+mod lanes;
+mod model;
+mod params;
+mod plate;
+mod stack;
+pub mod table;
+
+pub use error::Error;
+pub use lanes::Lanes;
+pub use model::{Jacobian, Prospect, plates, plates_with_slopes};
+pub use params::{LeafParams, Parameter, Version};
+pub use plate::Interface;
+pub use stack::{Optics, Slopes};

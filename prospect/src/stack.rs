@@ -1,0 +1,203 @@
+//! The leaf as a pile of N plates (Stokes 1862), N real: reflectance, transmittance, absorptance and their slopes.
+//!
+//! With M = N − 1, D² = (1+r+t)(1+r−t)(1−r+t)(1−r−t) and sinh L = D/2t, Stokes' equations for the M lower plates read
+//! R_sub = 2 r Q/G, T_sub = 1/G, where Q = sinh(ML)/D, G = (1 + r² − t²) Q + cosh ML. Joined with the upper plate:
+//!
+//! T = T_top/H,  R = R_top + 2 r t Q T,  H = (1 − r² − t²) Q + cosh ML.
+//!
+//! Q → M/2t as D → 0 (no absorption), so that nothing special happens there, nor at N = 1 (Q = 0, H = 1). To keep
+//! strong absorption in range everything is multiplied by y = e^(−ML).
+
+use leafbrdf_core::Real;
+
+use crate::interface::ln_1p;
+use crate::plate::{Plate, PlateSlope};
+
+/// What becomes of the light that falls on a leaf at one wavelength: fractions, unitless.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Optics<T> {
+    /// Hemispherical reflectance R.
+    pub reflectance: T,
+    /// Hemispherical transmittance T.
+    pub transmittance: T,
+    /// Absorptance 1 − R − T, computed without cancellation.
+    pub absorptance: T,
+}
+
+/// Slopes of reflectance and transmittance at one wavelength.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slopes<T> {
+    /// ∂R/∂K, ∂T/∂K: by the absorption coefficient of one layer, N held.
+    pub dr_dk: T,
+    /// See [`Slopes::dr_dk`].
+    pub dt_dk: T,
+    /// ∂R/∂N, ∂T/∂N: by the number of plates, K held.
+    pub dr_dn: T,
+    /// See [`Slopes::dr_dn`].
+    pub dt_dn: T,
+}
+
+/// Pieces of the pile that value and slopes share.
+#[derive(Clone, Copy)]
+struct Pile<T> {
+    /// D, L, y = e^(−ML) and y − 1.
+    d: T,
+    l: T,
+    y: T,
+    y_less_one: T,
+    /// 1 − y² = 2 y sinh ML and 1 + y² = 2 y cosh ML.
+    odd: T,
+    even: T,
+    /// 1 − r² − t².
+    z: T,
+    /// 1/(Z (1−y²) + D (1+y²)) = 1/(2 D y H).
+    inverse: T,
+    /// 1/2t.
+    half_t: T,
+}
+
+/// Smallest 1 − r − t that enters D: far below what changes any result, and large enough that D > 0 also in `f32`.
+const LEAST_ABSORPTION: f64 = 1e-30;
+
+#[inline(always)]
+fn pile<T: Real>(plate: &Plate<T>, m: T) -> Pile<T> {
+    let Plate { r, t, .. } = *plate;
+    let a = plate.a.max(T::lit(LEAST_ABSORPTION));
+    let d = ((T::ONE + r + t) * (T::ONE + r - t) * (T::ONE - r + t) * a).sqrt();
+    // t may underflow to 0 under extreme absorption. L then only enters y, which multiplies a transmittance of 0.
+    let half_t = T::HALF / t.max(T::lit(8.0) / T::MAX);
+    // e^L − 1 = ((1−t)² − r² + D)/2t, the first two terms as (1−r−t)(1+r−t)
+    let l = ln_1p((a * (T::ONE + r - t) + d) * half_t);
+    let (y, y_less_one) = exp_and_m1(-(m * l));
+    let odd = -(y_less_one * (T::ONE + y));
+    let even = T::ONE + y.squared();
+    let z = (T::ONE - r) * (T::ONE + r) - t.squared();
+    Pile { d, l, y, y_less_one, odd, even, z, inverse: T::ONE / (z * odd + d * even), half_t }
+}
+
+#[inline(always)]
+fn optics<T: Real>(plate: &Plate<T>, pile: &Pile<T>) -> Optics<T> {
+    // T_top/(2 D y H)
+    let scaled = plate.t_top * pile.inverse;
+    // cosh ML − 1 = (1−y)²/2y
+    let held = plate.a * (T::ONE + plate.r + plate.t) * pile.odd + pile.d * pile.y_less_one.squared();
+    Optics {
+        reflectance: plate.r_top + T::TWO * plate.r * plate.t * pile.odd * scaled,
+        transmittance: T::TWO * pile.d * pile.y * scaled,
+        absorptance: plate.a_top + held * scaled,
+    }
+}
+
+/// Reflectance, transmittance and absorptance of a leaf of 1 + `m` plates.
+#[inline(always)]
+pub(crate) fn leaf<T: Real>(plate: &Plate<T>, m: T) -> Optics<T> {
+    optics(plate, &pile(plate, m))
+}
+
+/// The same with the exact slopes, in one pass.
+#[inline(always)]
+pub(crate) fn leaf_with_slopes<T: Real>(
+    plate: &Plate<T>,
+    slope: PlateSlope<T>,
+    m: T,
+    series: &SlopeSeries<T>,
+) -> (Optics<T>, Slopes<T>) {
+    let pile = pile(plate, m);
+    let value = optics(plate, &pile);
+    let Plate { r, t, .. } = *plate;
+    let y = T::ONE + pile.y_less_one;
+    let d_inverse = T::ONE / pile.d;
+    // y Q, y cosh ML and 1/(y H)
+    let q = T::HALF * pile.odd * d_inverse;
+    let cosh = T::HALF * pile.even;
+    let h_inverse = T::TWO * pile.d * pile.inverse;
+
+    // ∂/∂N at constant K: Q' = (L/D) cosh ML, (cosh ML)' = L D Q, and cosh² − D²Q² = 1 leaves one term in R'.
+    let l_by_d = pile.l * d_inverse;
+    let h_n = pile.z * l_by_d * cosh + pile.l * pile.d * q;
+    let dt_dn = -(value.transmittance * h_n * h_inverse);
+    let dr_dn = T::TWO * r * t * plate.t_top * l_by_d * (y * h_inverse).squared();
+
+    // ∂/∂K at constant N. With e = D dL/dK:  Q' = V e − Q t'/t,  (cosh ML)' = M Q e,  V = (M cosh ML − 2t cosh L · Q)/D².
+    let e = -(slope.log_t * pile.z + T::TWO * r * slope.r);
+    let b = (T::ONE - r) * (T::ONE + r) + t.squared();
+    // V loses its digits as D → 0; there it is M B/(4t³) Σ k aₖ q^(k−1), q = sinh²L.
+    let sinh2_l = (pile.d * pile.half_t).squared();
+    let v_series = m * b * T::TWO * pile.half_t * pile.half_t.squared() * y * series.sum(sinh2_l);
+    let v_plain = (m * cosh - b * q) * d_inverse.squared();
+    let v = if sinh2_l < series.largest { v_series } else { v_plain };
+    let q_k = v * e - q * slope.log_t;
+    let z_k = -(T::TWO * (r * slope.r + t.squared() * slope.log_t));
+    let h_k = (z_k * q + pile.z * q_k + m * q * e) * h_inverse;
+    let dt_dk = value.transmittance * (slope.log_t - h_k);
+    let dr_dk =
+        slope.r_top + T::TWO * t * plate.t_top * h_inverse * (slope.r * q + r * v * e + r * q * (slope.log_t - h_k));
+    (value, Slopes { dr_dk, dt_dk, dr_dn, dt_dn })
+}
+
+/// Terms kept of the series of V.
+const TERMS: usize = 8;
+
+/// Series of d(sinh ML/sinh L)/d(sinh²L)/M in q = sinh²L, for one N.
+///
+/// sinh ML/sinh L = M Σ aₖ qᵏ, a₀ = 1, aₖ₊₁ = aₖ (M² − (2k+1)²)/((2k+2)(2k+3)).
+#[derive(Clone, Copy)]
+pub(crate) struct SlopeSeries<T> {
+    /// (k + 1) aₖ₊₁.
+    terms: [T; TERMS],
+    /// Below this q the series is used; (1 + M²) q < 0.01 leaves a remainder below 1e-17.
+    largest: T,
+}
+
+impl<T: Real> SlopeSeries<T> {
+    pub(crate) fn new(m: T) -> Self {
+        let mut terms = [T::ZERO; TERMS];
+        let mut a = T::ONE;
+        let mut k = T::ZERO;
+        for term in &mut terms {
+            let odd = k + k + T::ONE;
+            a = a * (m - odd) * (m + odd) / ((odd + T::ONE) * (odd + T::TWO));
+            k += T::ONE;
+            *term = a * k;
+        }
+        SlopeSeries { terms, largest: T::lit(0.01) / (T::ONE + m.squared()) }
+    }
+
+    #[inline(always)]
+    fn sum(&self, q: T) -> T {
+        let mut sum = T::ZERO;
+        for term in self.terms.iter().rev() {
+            sum = sum * q + *term;
+        }
+        sum
+    }
+}
+
+/// eˣ and eˣ − 1 for x ≤ 0, each to nearly full relative precision (1e-15 in `f64`).
+#[inline(always)]
+fn exp_and_m1<T: Real>(x: T) -> (T, T) {
+    // Taylor to degree 11 where eˣ − 1 would cancel; both are computed, so that a loop over bands vectorises.
+    let near = x.max(T::lit(-0.125));
+    let mut sum = T::ZERO;
+    for coefficient in EXP_M1 {
+        sum = sum * near + T::lit(coefficient);
+    }
+    let exp = x.exp();
+    let far = exp - T::ONE;
+    (exp, if x > T::lit(-0.125) { near * sum } else { far })
+}
+
+/// 1/(k + 1)! for k = 10 … 0.
+const EXP_M1: [f64; 11] = [
+    1.0 / 39_916_800.0,
+    1.0 / 3_628_800.0,
+    1.0 / 362_880.0,
+    1.0 / 40_320.0,
+    1.0 / 5_040.0,
+    1.0 / 720.0,
+    1.0 / 120.0,
+    1.0 / 24.0,
+    1.0 / 6.0,
+    0.5,
+    1.0,
+];
