@@ -64,6 +64,7 @@ pub static D: TableD<f64, BANDS> = TableD::<f64, BANDS>::cut::<FIRST_NM, 1>();
 pub static PRO: TablePro<f64, BANDS> = TablePro::<f64, BANDS>::cut::<FIRST_NM, 1>();
 
 /// The complete table of a version.
+#[cfg(any(feature = "std", feature = "libm"))]
 #[must_use]
 pub fn full(version: Version) -> View<'static, f64> {
     match version {
