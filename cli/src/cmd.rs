@@ -1,20 +1,35 @@
 //! The subcommands: one file each, with help text, arguments and `run`.
 
+mod brdf;
 mod completions;
 mod convert;
+mod dhrf;
+mod fit;
+mod fresnel;
+mod inputs;
+mod list;
+mod model;
+mod normalization;
 
 use std::io;
 
 use clap::Subcommand;
 use leafbrdf::measurement::{ReadError, WriteError};
 
+pub use normalization::NormalizationName;
+
 pub const EXAMPLES: &str = "Examples:
+  leafbrdf fit laurel.csv --model bands -o laurel-fit
   leafbrdf brdf --n 1.56 --sigma 0.29 --theta-s 60 --theta-v 0:70:10 --phi-v 180
   leafbrdf convert laurel.csv laurel-long.csv.gz --layout long
   leafbrdf completions bash > ~/.local/share/bash-completion/completions/leafbrdf";
 
 #[derive(Subcommand)]
 pub enum Command {
+    Brdf(brdf::Arguments),
+    Fresnel(fresnel::Arguments),
+    Dhrf(dhrf::Arguments),
+    Fit(fit::Arguments),
     Convert(convert::Arguments),
     Completions(completions::Arguments),
 }
@@ -22,6 +37,10 @@ pub enum Command {
 impl Command {
     pub fn run(self) -> Result<(), Failure> {
         match self {
+            Command::Brdf(arguments) => brdf::run(&arguments),
+            Command::Fresnel(arguments) => fresnel::run(&arguments),
+            Command::Dhrf(arguments) => dhrf::run(&arguments),
+            Command::Fit(arguments) => fit::run(&arguments),
             Command::Convert(arguments) => convert::run(&arguments),
             Command::Completions(arguments) => completions::run(&arguments),
         }

@@ -72,9 +72,11 @@ impl<T: Real> BandBounds<T> {
         }
     }
 
+    /// Are these bounds a box inside the model's domain? The solvers ask before they start.
+    ///
     /// # Errors
     /// [`FitError::Bounds`] unless −1 ≤ k_L ≤ 2, 1 < n ≤ 100, 10⁻⁴ ≤ σ ≤ 10, each with lower < upper.
-    pub(crate) fn check(&self) -> Result<(), FitError> {
+    pub fn check(&self) -> Result<(), FitError> {
         let ordered = |name, expected, interval: Interval<T>, least: T, most: T| {
             if interval.lower >= least && interval.upper <= most && interval.lower < interval.upper {
                 Ok(())

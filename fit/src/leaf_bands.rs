@@ -74,9 +74,8 @@ pub fn fit_bands(
 ) -> Result<Vec<BandResult>, FitError> {
     let leaf = Prepared::new(data, options)?;
     let mut workspace = vec![Portable(0.0); options.grid.workspace(leaf.width)];
-    let table = ScanTable::new(options.grid, leaf.options.bounds, leaf.directions(), leaf.real, &mut workspace).ok_or(
-        FitError::Bounds { parameter: "grid", expected: "at least 2 values of sigma and of n" },
-    )?;
+    let table = ScanTable::new(options.grid, leaf.options.bounds, leaf.directions(), leaf.real, &mut workspace)
+        .ok_or(FitError::Bounds { parameter: "grid", expected: "at least 2 values of sigma and of n" })?;
     let starts: Vec<Start<Number>> =
         options.starts.iter().map(|s| Start { n: Portable(s.n), sigma: Portable(s.sigma) }).collect();
 
@@ -122,7 +121,9 @@ impl Prepared {
                 return Err(FitError::Length { what: "sd", found: sd.len(), expected: data.brdf.len() });
             }
             // a missing value may have any sd, a value that counts must have a positive one
-            if let Some(index) = sd.iter().zip(data.brdf).position(|(sd, y)| !y.is_nan() && !(*sd > 0.0 && sd.is_finite())) {
+            if let Some(index) =
+                sd.iter().zip(data.brdf).position(|(sd, y)| !y.is_nan() && !(*sd > 0.0 && sd.is_finite()))
+            {
                 return Err(FitError::NotFinite { what: "sd (or is not positive)", index });
             }
         }
@@ -131,7 +132,8 @@ impl Prepared {
 
         let mut terms = [const { Vec::new() }; 3];
         for geometry in data.geometries {
-            let DirectionTerms { cos_theta_a, tan2_alpha, weight } = DirectionTerms::new(geometry, options.normalization);
+            let DirectionTerms { cos_theta_a, tan2_alpha, weight } =
+                DirectionTerms::new(geometry, options.normalization);
             for (list, value) in terms.iter_mut().zip([cos_theta_a, tan2_alpha, weight]) {
                 list.push(Portable(value));
             }
@@ -293,8 +295,12 @@ fn robust(leaf: &Prepared, results: &mut [BandResult]) -> Result<(), FitError> {
         let mut weight = band.weight.to_vec();
         for _ in 0..ROUNDS {
             let residuals = residuals(leaf, b, &fit.parameters)?;
-            let mut sizes: Vec<f64> =
-                residuals.iter().zip(band.weight).filter(|(_, w)| w.0 > 0.0).map(|(r, w)| r.abs() * w.0.sqrt()).collect();
+            let mut sizes: Vec<f64> = residuals
+                .iter()
+                .zip(band.weight)
+                .filter(|(_, w)| w.0 > 0.0)
+                .map(|(r, w)| r.abs() * w.0.sqrt())
+                .collect();
             sizes.sort_by(f64::total_cmp);
             let scale = 1.4826 * sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
             if !(scale > 0.0) {
@@ -310,7 +316,12 @@ fn robust(leaf: &Prepared, results: &mut [BandResult]) -> Result<(), FitError> {
                 break;
             };
             let still = (0..3).all(|i| (next.parameters[i] - fit.parameters[i]).abs() < 1e-7 * fit.parameters[i].abs());
-            fit = BandFit { iterations: fit.iterations + next.iterations, starts: fit.starts, second: fit.second, ..next };
+            fit = BandFit {
+                iterations: fit.iterations + next.iterations,
+                starts: fit.starts,
+                second: fit.second,
+                ..next
+            };
             if still {
                 break;
             }

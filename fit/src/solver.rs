@@ -138,9 +138,7 @@ pub fn minimize<T: Real, const P: usize, O: Objective<T, P>>(
 /// Distance of each parameter to the bound that the descent direction points at.
 #[inline(always)]
 fn distances<T: Real, const P: usize>(x: &[T; P], gradient: &[T; P], bounds: &[Interval<T>; P]) -> [T; P] {
-    core::array::from_fn(|i| {
-        if gradient[i] < T::ZERO { bounds[i].upper - x[i] } else { x[i] - bounds[i].lower }
-    })
+    core::array::from_fn(|i| if gradient[i] < T::ZERO { bounds[i].upper - x[i] } else { x[i] - bounds[i].lower })
 }
 
 /// The step −M⁻¹g, or `None` where even a strongly damped M is not positive definite (nothing finite is left).

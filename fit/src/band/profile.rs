@@ -48,7 +48,13 @@ const SUMS: usize = 15;
 /// One pass over the directions, in `L` lanes; each lane adds its own share, and the lanes are added at the end in a fixed
 /// order, so that every processor gives the same bits.
 #[inline(always)]
-fn accumulate<T: Real, const L: usize>(directions: Directions<T>, band: Band<T>, n: Dielectric<T>, sigma: T, a: T) -> Sums<T> {
+fn accumulate<T: Real, const L: usize>(
+    directions: Directions<T>,
+    band: Band<T>,
+    n: Dielectric<T>,
+    sigma: T,
+    a: T,
+) -> Sums<T> {
     let mut lanes = [[T::ZERO; L]; SUMS];
     let chunks = directions
         .cos_theta_a
@@ -87,15 +93,7 @@ fn accumulate<T: Real, const L: usize>(directions: Directions<T>, band: Band<T>,
     }
     let [d, d_d, s0, s1, ds0, ds1, ss0, ss1, ss2, c0, c1, c2, dc0, dc1, dc2] =
         lanes.map(|lane| lane.iter().fold(T::ZERO, |sum, x| sum + *x));
-    Sums {
-        d,
-        d_d,
-        s: [s0, s1],
-        d_s: [ds0, ds1],
-        s_s: [ss0, ss1, ss2],
-        c: [c0, c1, c2],
-        d_c: [dc0, dc1, dc2],
-    }
+    Sums { d, d_d, s: [s0, s1], d_s: [ds0, ds1], s_s: [ss0, ss1, ss2], c: [c0, c1, c2], d_c: [dc0, dc1, dc2] }
 }
 
 /// Everything at one (n, σ): χ² with k_L at its best, and the derivatives with respect to n and σ.
@@ -196,7 +194,8 @@ impl<T: Real, const L: usize> Objective<T, 2> for Profile<'_, T, L> {
         let sigma = x[1].exp();
         let point = self.at(self.bounds.n.clip(n), self.bounds.sigma.clip(sigma));
         // chain rule: n(F₀), σ(ln σ) with σ' = σ'' = σ
-        let change = |m: &[T; 3]| [[m[0] * n1.squared(), m[1] * n1 * sigma], [m[1] * n1 * sigma, m[2] * sigma.squared()]];
+        let change =
+            |m: &[T; 3]| [[m[0] * n1.squared(), m[1] * n1 * sigma], [m[1] * n1 * sigma, m[2] * sigma.squared()]];
         let mut hessian = change(&point.hessian);
         hessian[0][0] += point.gradient[0] * n2;
         hessian[1][1] += point.gradient[1] * sigma;

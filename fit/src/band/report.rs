@@ -91,7 +91,13 @@ impl<T: Real> BandFit<T> {
     }
 
     #[inline(always)]
-    pub(super) fn new(best: &Candidate<T>, total_weight: T, n_obs: usize, bounds: &BandBounds<T>, weights: Weights) -> Self {
+    pub(super) fn new(
+        best: &Candidate<T>,
+        total_weight: T,
+        n_obs: usize,
+        bounds: &BandBounds<T>,
+        weights: Weights,
+    ) -> Self {
         let point = &best.point;
         let free: [bool; 3] = best.at_bound.map(|at| at == AtBound::Free);
         let free_count = free.iter().filter(|free| **free).count();
@@ -188,8 +194,9 @@ fn scaled_inverse<T: Real>(a: &[[T; 3]; 3]) -> Option<[[T; 3]; 3]> {
         }
         scale[i] = T::ONE / a[i][i].sqrt();
     }
-    let rescale =
-        |m: &[[T; 3]; 3]| -> [[T; 3]; 3] { core::array::from_fn(|i| core::array::from_fn(|j| m[i][j] * scale[i] * scale[j])) };
+    let rescale = |m: &[[T; 3]; 3]| -> [[T; 3]; 3] {
+        core::array::from_fn(|i| core::array::from_fn(|j| m[i][j] * scale[i] * scale[j]))
+    };
     invert_spd(&rescale(a)).map(|inverse| rescale(&inverse))
 }
 

@@ -126,7 +126,12 @@ impl<'a, T: Real> Scan<'a, T> {
 
     /// Fills `valleys` with the local minima over σ of min over n, best first, and returns how many there are.
     #[inline(always)]
-    pub(super) fn valleys<const M: usize>(&mut self, band: Band<T>, total_weight: T, valleys: &mut [GridMinimum<T>; M]) -> usize {
+    pub(super) fn valleys<const M: usize>(
+        &mut self,
+        band: Band<T>,
+        total_weight: T,
+        valleys: &mut [GridMinimum<T>; M],
+    ) -> usize {
         self.costs(band, total_weight);
         let size = self.table.size;
         let bounds = self.table.bounds;

@@ -67,7 +67,11 @@ impl<'a, T: Real, const L: usize> BandSolver<'a, T, L> {
     ///
     /// # Errors
     /// [`FitError`] for bounds out of order, slices of different lengths, or direction terms that are not finite.
-    pub fn new(directions: Directions<'a, T>, options: BandOptions<T>, scan: Option<Scan<'a, T>>) -> Result<Self, FitError> {
+    pub fn new(
+        directions: Directions<'a, T>,
+        options: BandOptions<T>,
+        scan: Option<Scan<'a, T>>,
+    ) -> Result<Self, FitError> {
         options.bounds.check()?;
         directions.check(L)?;
         Ok(BandSolver { directions, options, scan })
@@ -118,7 +122,8 @@ impl<'a, T: Real, const L: usize> BandSolver<'a, T, L> {
                 best = Some(candidate);
                 continue;
             };
-            let (winner, loser) = if candidate.point.cost < leader.point.cost { (candidate, leader) } else { (leader, candidate) };
+            let (winner, loser) =
+                if candidate.point.cost < leader.point.cost { (candidate, leader) } else { (leader, candidate) };
             best = Some(winner);
             if distinct(&winner, &loser) && second.is_none_or(|other| loser.point.cost < other.point.cost) {
                 second = Some(loser);

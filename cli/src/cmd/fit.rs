@@ -1,0 +1,293 @@
+//! `leafbrdf fit`: the main job, inversion of measured leaf BRDF.
+
+use std::collections::HashMap;
+use std::fs;
+use std::io::{self, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use leafbrdf::fit::{LeafRow, Selected, Selection, Summary, WavelengthRange, fit_bands, write_bands, write_leaves};
+use leafbrdf::measurement::{Azimuth, Measurement, Quantity, ReadOptions, read_path};
+use leafbrdf::output::file_name;
+use leafbrdf_core::Normalization;
+use leafbrdf_fit::{BandBounds, BandOptions, Interval, LeafBandsOptions, Start, band::Weights};
+use rayon::prelude::*;
+
+use super::{Failure, NormalizationName};
+
+/// What is fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Model {
+    /// k_L, n and σ at each wavelength (§4.2)
+    Bands,
+}
+
+/// Invert measured leaf BRDF: parameters with standard errors, from measurement files
+///
+/// Writes DIR/bands.csv, DIR/dhrf.csv and DIR/summary.json, into a folder DIR/LEAF for each leaf where there are several, and
+/// DIR/leaves.csv with one row a leaf. A leaf that fails is named, and the others are still done.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  leafbrdf fit laurel.csv --model bands -o laurel-fit
+  leafbrdf fit leaves/*.csv --model bands --wavelengths 480:879 --normalization cook-torrance -o out")]
+pub struct Arguments {
+    /// Measurement files, wide or long, plain or gzip; - is standard input
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    /// What is fitted
+    #[arg(long, value_enum)]
+    model: Model,
+    /// Folder for the results; made where it does not exist
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// The constant K of Eq. 10 that n and sigma belong to: 2π² as printed, or 4π
+    #[arg(long, value_enum, default_value = "bousquet2005")]
+    normalization: NormalizationName,
+    /// Wavelengths in nm, both ends included; all in the file without it
+    #[arg(long, value_name = "FIRST:LAST[:STEP]")]
+    wavelengths: Option<WavelengthRange>,
+    /// Directions with a larger viewing zenith angle, in degrees, are left out (§2.3)
+    #[arg(long, value_name = "DEG", default_value_t = 70.0, value_parser = angle)]
+    max_theta_v: f64,
+    /// Bounds of the Lambert coefficient (Table 3)
+    #[arg(long, value_name = "LOWER:UPPER", default_value = "0.01:0.99", allow_hyphen_values = true)]
+    k_l_bounds: Range,
+    /// Bounds of the refractive index (Table 3)
+    #[arg(long, value_name = "LOWER:UPPER", default_value = "1.1:5")]
+    n_bounds: Range,
+    /// Bounds of the roughness (Table 3)
+    #[arg(long, value_name = "LOWER:UPPER", default_value = "0.01:1")]
+    sigma_bounds: Range,
+    /// A start of your own for n, tried beside those of the scan (with --start-sigma; Table 3: 1.47). k_L needs none: it
+    /// follows from n and sigma
+    #[arg(long, value_name = "N")]
+    start_n: Option<f64>,
+    /// A start of your own for sigma (with --start-n; Table 3: 0.3)
+    #[arg(long, value_name = "SIGMA")]
+    start_sigma: Option<f64>,
+    /// The most valleys of χ² that are searched in each band; the scan over n and sigma finds them
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u8).range(1..=4))]
+    starts: u8,
+    /// Huber's loss: values far from the model count less
+    #[arg(long)]
+    robust: bool,
+    /// Leave the file's standard deviations out: every value counts the same
+    #[arg(long)]
+    ignore_sd: bool,
+    /// Quantity of the files that do not say: π·BRDF (brf) or sr⁻¹ (brdf)
+    #[arg(long, value_enum)]
+    quantity: Option<Quantity>,
+    /// Azimuth convention of the files that do not say
+    #[arg(long, value_enum)]
+    azimuth: Option<Azimuth>,
+    /// Threads; as many as the machine has cores without it. The results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+/// LOWER:UPPER.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Range(f64, f64);
+
+impl FromStr for Range {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("expected LOWER:UPPER with LOWER < UPPER, such as 1.1:5, not {text}");
+        let (lower, upper) = text.split_once(':').ok_or_else(wrong)?;
+        match (lower.trim().parse::<f64>(), upper.trim().parse::<f64>()) {
+            (Ok(lower), Ok(upper)) if lower < upper && upper.is_finite() && lower.is_finite() => {
+                Ok(Range(lower, upper))
+            }
+            _ => Err(wrong()),
+        }
+    }
+}
+
+fn angle(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(degrees) if (0.0..=90.0).contains(&degrees) => Ok(degrees),
+        _ => Err("expected an angle from 0 to 90 degrees".to_string()),
+    }
+}
+
+impl Arguments {
+    fn options(&self) -> Result<LeafBandsOptions, Failure> {
+        let interval = |Range(lower, upper)| Interval::new(lower, upper);
+        let bounds = BandBounds {
+            k_lambert: interval(self.k_l_bounds),
+            n: interval(self.n_bounds),
+            sigma: interval(self.sigma_bounds),
+        };
+        let start = match (self.start_n, self.start_sigma) {
+            (None, None) => None,
+            (n, sigma) => Some(Start { n: n.unwrap_or(1.47), sigma: sigma.unwrap_or(0.3) }),
+        };
+        if let Some(Start { n, sigma }) = start {
+            for (option, value, within) in
+                [("--start-n", n, self.n_bounds), ("--start-sigma", sigma, self.sigma_bounds)]
+            {
+                if !(value >= within.0 && value <= within.1) {
+                    let message = format!("{option} {value} lies outside its bounds {}:{}", within.0, within.1);
+                    return Err(Failure::Usage(message));
+                }
+            }
+        }
+        bounds.check().map_err(|error| Failure::Usage(error.to_string()))?;
+        Ok(LeafBandsOptions {
+            normalization: self.normalization.into(),
+            band: BandOptions {
+                bounds,
+                starts: usize::from(self.starts),
+                weights: Weights::Relative,
+                ..BandOptions::table_3()
+            },
+            starts: start.into_iter().collect(),
+            robust: self.robust,
+            ..LeafBandsOptions::default()
+        })
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let options = arguments.options()?;
+    fs::create_dir_all(&arguments.output).map_err(|error| Failure::writing(Some(&arguments.output), &error))?;
+    let threads = usize::from(arguments.threads.unwrap_or(0));
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|error| Failure::Failed(format!("threads: {error}")))?;
+    let bar = progress_bar();
+    let leaves = read(arguments);
+    let several = leaves.len() > 1;
+    bar.set_length(leaves.iter().filter_map(|leaf| Some(leaf.data.as_ref().ok()?.wavelengths_nm.len() as u64)).sum());
+
+    let Model::Bands = arguments.model;
+    let rows: Vec<LeafRow> = pool.install(|| {
+        leaves
+            .par_iter()
+            .map(|leaf| LeafRow {
+                leaf: leaf.name.clone(),
+                file: leaf.file.clone(),
+                result: leaf.data.clone().and_then(|data| {
+                    let folder =
+                        if several { arguments.output.join(file_name(&leaf.name)) } else { arguments.output.clone() };
+                    one_leaf(&data, leaf, arguments, &options, &folder, &bar)
+                }),
+            })
+            .collect()
+    });
+    bar.finish_and_clear();
+
+    let convention = Normalization::from(arguments.normalization).name();
+    write_leaves(&arguments.output, "bands", convention, &rows)
+        .map_err(|error| Failure::writing(Some(&arguments.output.join("leaves.csv")), &error))?;
+    report(&rows)
+}
+
+/// One leaf of the input, or why there is none.
+struct Input {
+    name: String,
+    file: String,
+    data: Result<Measurement, String>,
+}
+
+/// All leaves of all files, each under a name of its own; a file that cannot be read is one failed leaf.
+fn read(arguments: &Arguments) -> Vec<Input> {
+    let options = ReadOptions { quantity: arguments.quantity, azimuth: arguments.azimuth };
+    let mut inputs = Vec::new();
+    let mut places: HashMap<String, String> = HashMap::new();
+    for path in &arguments.files {
+        let file = path.display().to_string();
+        match read_path(path, &options) {
+            Ok(leaves) => inputs.extend(leaves.into_iter().map(|leaf| {
+                let folder = file_name(&leaf.name);
+                let data = match places.get(&folder) {
+                    Some(other) => Err(format!(
+                        "{file}: leaf {} has the name of one in {other}, whose results it would overwrite: give one of them \
+                         another file name or `# sample:`",
+                        leaf.name
+                    )),
+                    None => Ok(leaf.clone()),
+                };
+                places.entry(folder).or_insert_with(|| file.clone());
+                Input { name: leaf.name, file: file.clone(), data }
+            })),
+            Err(error) => {
+                let name = path.file_stem().map_or_else(|| file.clone(), |stem| stem.to_string_lossy().into_owned());
+                inputs.push(Input { name, file, data: Err(error.to_string()) });
+            }
+        }
+    }
+    inputs
+}
+
+fn one_leaf(
+    data: &Measurement,
+    input: &Input,
+    arguments: &Arguments,
+    options: &LeafBandsOptions,
+    folder: &Path,
+    bar: &ProgressBar,
+) -> Result<Summary, String> {
+    let named = |sentence: String| format!("{}: leaf {}: {sentence}", input.file, input.name);
+    let selection = Selection {
+        wavelengths: arguments.wavelengths,
+        max_theta_v_deg: arguments.max_theta_v,
+        use_sd: !arguments.ignore_sd,
+    };
+    let selected = Selected::new(data, &selection).map_err(|failure| named(failure.to_string()))?;
+    let mut options = options.clone();
+    if selected.sd.is_some() {
+        options.band.weights = Weights::Absolute;
+    }
+    let outcome =
+        fit_bands(selected, &options, &|bands| bar.inc(bands as u64)).map_err(|failure| named(failure.to_string()))?;
+    let summary = Summary::of_bands(data, &input.file, &outcome);
+    fs::create_dir_all(folder)
+        .and_then(|()| write_bands(folder, &outcome))
+        .and_then(|()| summary.write(folder))
+        .map_err(|error| format!("{}: cannot be written: {error}", folder.display()))?;
+    Ok(summary)
+}
+
+/// Warnings and failures on standard error; failure of the command where a leaf has failed.
+fn report(rows: &[LeafRow]) -> Result<(), Failure> {
+    let mut errors = io::stderr().lock();
+    let mut failed = 0;
+    for row in rows {
+        match &row.result {
+            Ok(summary) => {
+                let line = format!(
+                    "{}: {} bands, mean n {:.4}, mean sigma {:.4}, rmse {:.3e} sr^-1, R2 {:.4}",
+                    row.leaf, summary.fitted, summary.n, summary.sigma, summary.rmse, summary.r2
+                );
+                // Messages are a courtesy: where standard error is closed, the files are what was asked for.
+                let _ = writeln!(errors, "{line}");
+                for warning in &summary.warnings {
+                    let _ = writeln!(errors, "warning: {}: {warning}", row.leaf);
+                }
+            }
+            Err(sentence) => {
+                failed += 1;
+                let _ = writeln!(errors, "error: {sentence}");
+            }
+        }
+    }
+    match failed {
+        0 => Ok(()),
+        _ => Err(Failure::Failed(format!("{failed} of {} leaves failed, the others are done", rows.len()))),
+    }
+}
+
+/// On standard error, and only on a terminal.
+fn progress_bar() -> ProgressBar {
+    if !io::stderr().is_terminal() {
+        return ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+    }
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} bands {eta}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(0).with_style(style)
+}

@@ -1,0 +1,41 @@
+//! The main job: from a measured leaf to its parameters, and from these to the files of `DIR/LEAF`.
+//!
+//! | room | what |
+//! |---|---|
+//! | `select` | which wavelengths and directions take part |
+//! | `bands` | k_L, n, σ at each wavelength: the inversion, `bands.csv`, `dhrf.csv` |
+//! | `summary` | `summary.json`: the leaf as a whole, and what the user should be warned of |
+//! | `leaves` | `leaves.csv`: one row a leaf |
+
+mod bands;
+mod leaves;
+mod select;
+mod summary;
+
+pub use bands::{BandsOutcome, fit_bands, write_bands};
+pub use leaves::{LeafRow, write_leaves};
+pub use select::{Selected, Selection, WavelengthRange};
+pub use summary::Summary;
+
+use std::fmt;
+
+/// Why a leaf could not be fitted: in the words that the user reads.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FitFailure(
+    /// The sentence.
+    pub String,
+);
+
+impl fmt::Display for FitFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for FitFailure {}
+
+impl From<leafbrdf_fit::FitError> for FitFailure {
+    fn from(error: leafbrdf_fit::FitError) -> Self {
+        FitFailure(error.to_string())
+    }
+}
