@@ -3,7 +3,7 @@
 use crate::facet::{Beckmann, Facets, beckmann, beckmann_log_slopes};
 use crate::fresnel::{Absorbing, Dielectric, Index};
 use crate::masking::{Masking, VCavity, v_cavity};
-use crate::{DomainError, Geometry, Real};
+use crate::{DhrfGradient, DomainError, Geometry, Grade, Illumination, Real};
 
 /// The constant K of Eq. 10, BRDF_spec = F G exp(−tan²α/σ²) / (K cosθ_s cosθ_v σ² cos⁴α): two conventions exist.
 ///
@@ -219,6 +219,32 @@ impl<T: Real, I: Index<T>, D: Facets<T>, G: Masking<T>> Surface<T, I, D, G> {
             // F first: where there is no reflection there is no slope, however steep the lobe (0 · ∞ would be NaN)
             d_sigma: (f * weight) * d_sigma + (f * projection) * (d * g_sigma),
         }
+    }
+}
+
+impl<T: Real, I: Index<T>> Surface<T, I> {
+    /// DHRF_spec (Eq. 14), unitless: the share of the light from `source` that the surface reflects and that never enters
+    /// the leaf. Under the surface's own convention for K.
+    ///
+    /// ```
+    /// use leafbrdf_core::{Angle, Grade, Illumination, Surface};
+    /// // beech (Table 4): lit at 60° nearly twice as much as at 8° (§4.4)
+    /// let sun = Illumination::new(Angle::from_degrees(60.0_f64))?;
+    /// let beech = Surface::new(1.56, 0.29)?;
+    /// assert!((beech.dhrf(&sun, Grade::E10) - 0.0551).abs() < 1e-4);
+    /// # Ok::<(), leafbrdf_core::DomainError>(())
+    /// ```
+    #[inline]
+    pub fn dhrf(&self, source: &Illumination<T>, grade: Grade) -> T {
+        self.normalization.factor::<T>() * source.dhrf(self.index, self.sigma, grade)
+    }
+
+    /// DHRF_spec with its exact derivatives with respect to n and σ, from the same nodes.
+    #[inline]
+    pub fn dhrf_with_gradient(&self, source: &Illumination<T>, grade: Grade) -> DhrfGradient<T> {
+        let DhrfGradient { value, d_n, d_sigma } = source.dhrf_with_gradient(self.index, self.sigma, grade);
+        let factor = self.normalization.factor::<T>();
+        DhrfGradient { value: factor * value, d_n: factor * d_n, d_sigma: factor * d_sigma }
     }
 }
 

@@ -121,7 +121,7 @@ fn exp_f64(x: f64) -> f64 {
     let y = if x < LOWEST { 0.0 } else { y };
     let y = if x > HIGHEST { f64::INFINITY } else { y };
     // NaN fails every comparison above
-    if x == x { y } else { x }
+    if x.is_nan() { x } else { y }
 }
 
 /// eˣ in single precision; the same steps, the series to degree 7.
@@ -150,7 +150,7 @@ fn exp_f32(x: f32) -> f32 {
     let y = exp_r * half_scale * 2.0;
     let y = if x < LOWEST { 0.0 } else { y };
     let y = if x > HIGHEST { f32::INFINITY } else { y };
-    if x == x { y } else { x }
+    if x.is_nan() { x } else { y }
 }
 
 /// ln x in double precision for normal x > 0: x = 2ᵏ m, m in [√½, √2), ln m = 2 artanh((m−1)/(m+1)).
