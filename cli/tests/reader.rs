@@ -426,3 +426,24 @@ fn a_peak_on_the_wrong_side_deserves_a_warning() {
     let warning = read_with(file, options).unwrap()[0].azimuth_warning().unwrap();
     assert!(warning.contains("illumination side") && warning.contains("--azimuth forward_180"), "{warning}");
 }
+
+// The documentation.
+
+#[test]
+fn the_examples_of_the_documentation_are_read() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/formats.md");
+    let text = std::fs::read_to_string(path).unwrap();
+    let examples: Vec<&str> = text.split("```csv\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
+    let [wide, long, points] = examples.as_slice() else { panic!("three examples expected") };
+    assert_eq!(one(wide).counts().usable, 6);
+    let leaves = read(long).unwrap();
+    assert_eq!(leaves.iter().map(|leaf| leaf.name.as_str()).collect::<Vec<_>>(), ["upper", "lower"]);
+    assert!(leaves[1].sd.is_some());
+    let points = leafbrdf::points::Points::from_bytes("points.csv", points.as_bytes()).unwrap();
+    assert_eq!(points.number(1, points.require("sigma").unwrap()), Ok(0.29));
+    // The message that the document shows.
+    let decimal_comma = wide.replace("0.045", "\"0,045\"");
+    let message = read(decimal_comma).unwrap_err();
+    let shown = text.split_once("laurel.csv, line 212, column 4: ").unwrap().1.lines().next().unwrap();
+    assert!(message.ends_with(shown), "{message}");
+}

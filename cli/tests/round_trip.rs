@@ -179,6 +179,32 @@ proptest! {
     }
 
     #[test]
+    fn a_file_that_is_accepted_can_be_written_and_is_read_back(
+        which in 0_usize..2,
+        edits in prop::collection::vec((any::<prop::sample::Index>(), 0_usize..4, "[0-9.,\n\"#:eN -]{0,6}|brdf|forward_0|NaN|\r"), 0..6),
+    ) {
+        let mut text = [WIDE, LONG][which].to_string();
+        for (place, removed, inserted) in edits {
+            // All ASCII: every place is between two characters.
+            let start = place.index(text.len().max(1)).min(text.len());
+            let end = (start + removed).min(text.len());
+            text.replace_range(start..end, &inserted);
+        }
+        if let Ok(leaves) = read_bytes("leaf.csv", text.as_bytes(), &ReadOptions::default()) {
+            let back = through(&leaves, WriteOptions::default());
+            prop_assert_eq!(back.len(), leaves.len());
+            for (back, leaf) in back.iter().zip(&leaves) {
+                // Azimuths of more than twelve decimals round when they are turned by 180°: 3e-14° each time.
+                for (a, b) in leaf.directions.iter().zip(&back.directions) {
+                    let apart = (a.phi_v_deg - b.phi_v_deg).abs() % 360.0;
+                    prop_assert!(apart.min(360.0 - apart) < 1e-12);
+                }
+                same(&Measurement { directions: leaf.directions.clone(), ..back.clone() }, leaf)?;
+            }
+        }
+    }
+
+    #[test]
     fn no_text_like_a_measurement_makes_the_reader_panic(
         lines in prop::collection::vec(
             "(# quantity: brf|theta_s_deg|theta_v_deg|phi_v_deg|wavelength_nm|brf|sample|sd|[0-9.,\"#\r-]{0,12}|NaN|é)(,(theta_s_deg|theta_v_deg|phi_v_deg|brdf|sd|sample|[0-9.e\" -]{0,5}|NA)){0,6}",
@@ -198,6 +224,12 @@ proptest! {
         }
     }
 }
+
+const WIDE: &str = "# species: Acer\n# sample: a\n# azimuth: forward_0\n# quantity: brf\ntheta_s_deg,30,30\ntheta_v_deg,60,0\n\
+                    phi_v_deg,180,0\n400,0.116,0.121\n401,,-0.002\n";
+
+const LONG: &str = "# azimuth: forward_0\nwavelength_nm,theta_s_deg,theta_v_deg,phi_v_deg,brf,sd,sample\n400,30,60,180,0.116,0.01,a\n\
+                    400,30,-0,0,0.121,,a\n401,30,60,180,0.117,0,b\n401,30,0,0,NaN,0.1,b\n";
 
 fn example() -> Measurement {
     let file =

@@ -1,6 +1,7 @@
 //! The two azimuth conventions.
 
-use super::Direction;
+use super::input::Source;
+use super::{Direction, ReadError, check};
 
 /// Which φ_v is the forward, specular side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
@@ -34,10 +35,29 @@ impl Azimuth {
     }
 }
 
+/// Changes the azimuths of a file from `forward_0` to `forward_180`.
+///
+/// Two azimuths that differ by less than the rounding of 180° (3e-14°) become one; that is an error, as for any other
+/// direction that stands twice.
+pub(super) fn turn(source: Source<'_>, directions: &mut [Direction]) -> Result<(), ReadError> {
+    turned(directions);
+    match check::twice(directions) {
+        None => Ok(()),
+        Some((index, before)) => Err(ReadError::whole(
+            source.name,
+            format!(
+                "directions {} and {} are the same but for rounding: expected each direction once",
+                before + 1,
+                index + 1
+            ),
+        )),
+    }
+}
+
 /// Changes the azimuths of all directions from either convention to the other one.
 ///
 /// The range stays the file's own: (−180, 180] where there is a negative azimuth, [0, 360) where there is none.
-pub(super) fn turn(directions: &mut [Direction]) {
+pub(super) fn turned(directions: &mut [Direction]) {
     let signed = directions.iter().any(|direction| direction.phi_v_deg < 0.0);
     for direction in directions {
         let phi = direction.phi_v_deg;
@@ -63,24 +83,24 @@ fn decimal_sum(phi: f64, turn: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn turned(phis: &[f64]) -> Vec<f64> {
+    fn azimuths_of_turned(phis: &[f64]) -> Vec<f64> {
         let mut directions: Vec<Direction> =
             phis.iter().map(|&phi_v_deg| Direction { theta_s_deg: 30.0, theta_v_deg: 40.0, phi_v_deg }).collect();
-        turn(&mut directions);
+        turned(&mut directions);
         directions.iter().map(|direction| direction.phi_v_deg).collect()
     }
 
     #[test]
     fn turning_by_half_a_circle_keeps_the_range() {
-        assert_eq!(turned(&[0.0, 90.0, 180.0, 270.0, 359.0]), [180.0, 270.0, 0.0, 90.0, 179.0]);
-        assert_eq!(turned(&[-90.0, 0.0, 30.0, 180.0]), [90.0, 180.0, -150.0, 0.0]);
+        assert_eq!(azimuths_of_turned(&[0.0, 90.0, 180.0, 270.0, 359.0]), [180.0, 270.0, 0.0, 90.0, 179.0]);
+        assert_eq!(azimuths_of_turned(&[-90.0, 0.0, 30.0, 180.0]), [90.0, 180.0, -150.0, 0.0]);
     }
 
     #[test]
     fn turning_twice_changes_nothing() {
         let phis: Vec<f64> = (0..3600).map(|tenth| f64::from(tenth) / 10.0).collect();
-        assert_eq!(turned(&turned(&phis)), phis);
+        assert_eq!(azimuths_of_turned(&azimuths_of_turned(&phis)), phis);
         let signed: Vec<f64> = (-1799..=1800).map(|tenth| f64::from(tenth) / 10.0).collect();
-        assert_eq!(turned(&turned(&signed)), signed);
+        assert_eq!(azimuths_of_turned(&azimuths_of_turned(&signed)), signed);
     }
 }

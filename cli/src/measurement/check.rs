@@ -1,5 +1,8 @@
 //! What angles, wavelengths and values must satisfy, in either layout.
 
+use std::collections::HashMap;
+
+use super::Direction;
 use super::cell::{self, Cell, remedy, shown};
 
 /// What a column holds.
@@ -20,6 +23,14 @@ pub(super) fn number(kind: Kind, cell: &[u8]) -> Result<f64, String> {
         Cell::Missing if kind.may_be_missing() => Ok(f64::NAN),
         _ => Err(kind.complaint(cell)),
     }
+}
+
+/// The first direction that stands twice, and where it stands before.
+pub(super) fn twice(directions: &[Direction]) -> Option<(usize, usize)> {
+    let mut first = HashMap::with_capacity(directions.len());
+    let again =
+        |(index, direction): (usize, &Direction)| first.insert(direction.key(), index).map(|before| (index, before));
+    directions.iter().enumerate().find_map(again)
 }
 
 impl Kind {

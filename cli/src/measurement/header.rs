@@ -87,7 +87,12 @@ pub(super) fn read(source: Source<'_>) -> Result<Header, ReadError> {
                 }
             }
         } else if key.eq_ignore_ascii_case("sample") {
-            header.sample = Some(value.to_string()).filter(|sample| !sample.is_empty());
+            if !is_sample(value) {
+                return wrong(format!(
+                    "sample is {value:?}: expected the name of a sample, without control characters"
+                ));
+            }
+            header.sample = Some(value.to_string());
         } else if !(key.is_empty() && value.is_empty()) {
             header.metadata.push(key, value);
         }
@@ -103,6 +108,11 @@ pub(super) fn split(remark: &str) -> (&str, &str) {
         Some((key, value)) if is_key(key.trim_end()) && !value.starts_with("//") => (key.trim_end(), value.trim()),
         _ => ("", remark),
     }
+}
+
+/// What a leaf may be called.
+pub(super) fn is_sample(name: &str) -> bool {
+    !name.is_empty() && name.trim() == name && !name.contains(char::is_control)
 }
 
 /// Letters, digits, `_`, `-`, `.` and single spaces, beginning with a letter, at most 40 characters.

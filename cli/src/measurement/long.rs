@@ -8,7 +8,7 @@ use super::cell::{shown, trim};
 use super::check::{Kind, number};
 use super::input::{Source, at};
 use super::read::Context;
-use super::{Azimuth, Direction, Layout, Measurement, Quantity, ReadError, azimuth};
+use super::{Azimuth, Direction, Layout, Measurement, Quantity, ReadError, azimuth, header};
 
 /// A sparse file (every row its own wavelength and direction) would need the square of its rows in memory. A grid
 /// may be this many times larger than the rows that are there.
@@ -212,8 +212,9 @@ impl Leaves {
         let is_last =
             self.leaves.get(self.last).is_some_and(|leaf| leaf.sample.as_deref().map(str::as_bytes) == Some(cell));
         if !is_last {
-            if cell.is_empty() || cell.iter().any(u8::is_ascii_control) {
-                let message = format!("found {}: expected the name of a sample", shown(cell));
+            if !std::str::from_utf8(cell).is_ok_and(header::is_sample) {
+                let message =
+                    format!("found {}: expected the name of a sample, without control characters", shown(cell));
                 return Err(ReadError {
                     column_name: Some("sample".to_string()),
                     ..source.error(at(record), Some(sample + 1), message)
@@ -326,7 +327,7 @@ impl Leaf {
 
         let mut directions = self.directions;
         if context.azimuth == Azimuth::Forward0 {
-            azimuth::turn(&mut directions);
+            azimuth::turn(source, &mut directions)?;
         }
         let has_sd = sd.iter().any(|sd| !sd.is_nan());
         Ok(Measurement {

@@ -1,11 +1,9 @@
 //! The wide layout: one column a direction, one row a wavelength.
 
-use std::collections::HashMap;
-
 use csv::ByteRecord;
 
 use super::cell::{shown, trim};
-use super::check::{Kind, number};
+use super::check::{self, Kind, number};
 use super::input::{Source, at};
 use super::read::{ANGLES, Context};
 use super::{Azimuth, Direction, Layout, Measurement, Quantity, ReadError, azimuth};
@@ -46,7 +44,7 @@ pub(super) fn read(context: Context<'_>) -> Result<Measurement, ReadError> {
         ));
     }
     if context.azimuth == Azimuth::Forward0 {
-        azimuth::turn(&mut directions);
+        azimuth::turn(source, &mut directions)?;
     }
     Ok(Measurement {
         name: context.leaf_name(),
@@ -135,17 +133,15 @@ fn directions(
         .zip(phi_v)
         .map(|((theta_s_deg, theta_v_deg), phi_v_deg)| Direction { theta_s_deg, theta_v_deg, phi_v_deg })
         .collect();
-    let mut first = HashMap::with_capacity(directions.len());
-    for (index, direction) in directions.iter().enumerate() {
-        if let Some(before) = first.insert(direction.key(), index) {
-            let Direction { theta_s_deg, theta_v_deg, phi_v_deg } = direction;
-            let message = format!(
-                "the direction θ_s {theta_s_deg}°, θ_v {theta_v_deg}°, φ_v {phi_v_deg}° stands in column {} already: \
-                 expected each direction once (average repeated measurements, or give each a file)",
-                before + 2
-            );
-            return Err(source.error(last, Some(index + 2), message));
-        }
+    if let Some((index, before)) = check::twice(&directions)
+        && let Some(Direction { theta_s_deg, theta_v_deg, phi_v_deg }) = directions.get(index)
+    {
+        let message = format!(
+            "the direction θ_s {theta_s_deg}°, θ_v {theta_v_deg}°, φ_v {phi_v_deg}° stands in column {} already: \
+             expected each direction once (average repeated measurements, or give each a file)",
+            before + 2
+        );
+        return Err(source.error(last, Some(index + 2), message));
     }
     Ok((directions, width.unwrap_or(0)))
 }

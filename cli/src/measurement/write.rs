@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use super::header::{self, Metadata};
-use super::{Azimuth, Direction, Layout, Measurement, Quantity, WriteError, azimuth};
+use super::{Azimuth, Direction, Layout, Measurement, Quantity, WriteError, azimuth, check};
 use crate::output::{AtomicFile, push_number};
 
 /// The form to write; `None` leaves it as the measurement's own file had it.
@@ -91,12 +91,8 @@ fn writable(one: &Measurement, first: &Measurement, several: bool) -> Result<(),
     if one.values.len() != cells || one.sd.as_ref().is_some_and(|sd| sd.len() != cells) {
         return wrong("there must be one value (and standard deviation) a wavelength and direction");
     }
-    let distinct: HashSet<[u64; 3]> = one.directions.iter().map(Direction::key).collect();
-    if distinct.len() != one.directions.len() || !one.wavelengths_nm.is_sorted_by(|a, b| a < b) {
+    if check::twice(&one.directions).is_some() || !one.wavelengths_nm.is_sorted_by(|a, b| a < b) {
         return wrong("wavelengths must ascend, and directions must differ");
-    }
-    if one.sd.is_some() != first.sd.is_some() && several {
-        return wrong("standard deviations for some leaves of the file and not for others: write a file for each");
     }
     if one.metadata != first.metadata {
         return wrong("the leaves' '# key: value' lines differ: write a file for each");
@@ -105,19 +101,13 @@ fn writable(one: &Measurement, first: &Measurement, several: bool) -> Result<(),
         let as_read = if key.is_empty() { header::split(value) == ("", value) } else { header::is_key(key) };
         let reserved = ["quantity", "azimuth", "sample"].iter().any(|other| key.eq_ignore_ascii_case(other));
         let empty = key.is_empty() && value.is_empty();
-        if !as_read
-            || reserved
-            || empty
-            || value.trim() != value
-            || value.contains(char::is_control)
-            || value.starts_with("//")
-        {
+        if !as_read || reserved || empty || value.trim() != value || value.contains(['\n', '\r']) {
             return wrong(&format!("the metadata line {key:?}: {value:?} would not be read back as it is"));
         }
     }
     match &one.sample {
         None if several => wrong("several leaves in one file need a sample name each"),
-        Some(sample) if sample.is_empty() || sample.trim() != sample || sample.contains(char::is_control) => {
+        Some(sample) if !header::is_sample(sample) => {
             wrong("a sample name must not be empty, and has no blanks around it and no control characters")
         }
         _ => Ok(()),
@@ -143,7 +133,7 @@ fn line(text: &mut String, key: &str, value: &str) {
 fn in_convention(directions: &[Direction], azimuth: Azimuth) -> Vec<Direction> {
     let mut directions = directions.to_vec();
     if azimuth == Azimuth::Forward0 {
-        azimuth::turn(&mut directions);
+        azimuth::turned(&mut directions);
     }
     directions
 }
