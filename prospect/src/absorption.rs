@@ -46,17 +46,30 @@ impl<T: Real> Rules<T> {
         Ok(layer)
     }
 
-    /// ∂C_i/∂parameter for each constituent: 1 for itself, and `car_per_cab` for carotenoids tied to chlorophyll.
-    pub(crate) fn content_slopes(&self, version: Version, parameter: Parameter) -> [T; MOST_CONSTITUENTS] {
-        let mut slopes = [T::ZERO; MOST_CONSTITUENTS];
-        for (slope, &constituent) in slopes.iter_mut().zip(version.constituents()) {
-            *slope = match (constituent, self.car_per_cab) {
-                (Parameter::Car, Some(ratio)) if parameter == Parameter::Cab => ratio,
-                (Parameter::Car, Some(_)) => T::ZERO,
-                _ if constituent == parameter => T::ONE,
-                _ => T::ZERO,
-            };
+    /// What a parameter changes.
+    pub(crate) fn action(&self, version: Version, parameter: Parameter) -> Action<T> {
+        let column = |constituent| version.constituents().iter().position(|&known| known == constituent);
+        match (parameter, self.car_per_cab) {
+            (Parameter::NStruct, _) => Action::Structure,
+            (Parameter::Car, Some(_)) => Action::Nothing,
+            _ => match column(parameter) {
+                Some(own) => {
+                    let tied = if parameter == Parameter::Cab { self.car_per_cab } else { None };
+                    Action::Content { own, tied: column(Parameter::Car).zip(tied) }
+                }
+                None => Action::Nothing,
+            },
         }
-        slopes
     }
+}
+
+/// What a parameter changes in the leaf.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Action<T> {
+    /// N.
+    Structure,
+    /// The content of one constituent (its column), and of one tied to it (its column, and how much of it per unit).
+    Content { own: usize, tied: Option<(usize, T)> },
+    /// Nothing: unknown to this version, or tied to another.
+    Nothing,
 }

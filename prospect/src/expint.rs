@@ -54,8 +54,13 @@ pub(crate) const THICK: f64 = 2.0;
 /// ```
 #[inline(always)]
 pub fn transmission<T: Real>(k: T) -> Transmission<T> {
-    // Written as two selects rather than a branch, so that a loop over bands vectorises.
-    let thin = transmission_thin(k);
+    transmission_either(k, k_ln_k(k))
+}
+
+/// [`transmission`] from K ln K; two selects rather than a branch, so that a loop over bands vectorises.
+#[inline(always)]
+pub(crate) fn transmission_either<T: Real>(k: T, k_ln_k: T) -> Transmission<T> {
+    let thin = transmission_thin(k, k_ln_k);
     let thick = transmission_thick(k);
     let is_thin = k < T::lit(THICK);
     Transmission {
@@ -66,8 +71,8 @@ pub fn transmission<T: Real>(k: T) -> Transmission<T> {
 
 /// τ for K < 2: 1 − τ = K (K ln K + polynomial).
 #[inline(always)]
-pub(crate) fn transmission_thin<T: Real>(k: T) -> Transmission<T> {
-    let absorbed = k * (k * ln_from_zero(k) + horner(&ABSORBED_THIN, k - T::ONE));
+pub(crate) fn transmission_thin<T: Real>(k: T, k_ln_k: T) -> Transmission<T> {
+    let absorbed = k * (k_ln_k + horner(&ABSORBED_THIN, k - T::ONE));
     Transmission { tau: T::ONE - absorbed, absorbed }
 }
 
@@ -83,16 +88,22 @@ pub(crate) fn transmission_thick<T: Real>(k: T) -> Transmission<T> {
 /// - `k`: absorption coefficient, ≥ 0; `tau`: [`transmission`] of it.
 #[inline(always)]
 pub fn transmission_log_slope<T: Real>(k: T, tau: T) -> T {
-    let thin = log_slope_thin(k, tau);
+    log_slope(k, k_ln_k(k), T::ONE / tau)
+}
+
+/// [`transmission_log_slope`] from K ln K and 1/τ, which the loop over bands has already.
+#[inline(always)]
+pub(crate) fn log_slope<T: Real>(k: T, k_ln_k: T, tau_inverse: T) -> T {
+    let thin = log_slope_thin(k, k_ln_k, tau_inverse);
     let thick = log_slope_thick(k);
     if k < T::lit(THICK) { thin } else { thick }
 }
 
 /// −2 E₂(K)/τ for K < 2, E₂ = K ln K + polynomial.
 #[inline(always)]
-pub(crate) fn log_slope_thin<T: Real>(k: T, tau: T) -> T {
-    let e2 = k * ln_from_zero(k) + horner(&E2_THIN, k - T::ONE);
-    -(e2 + e2) / tau
+pub(crate) fn log_slope_thin<T: Real>(k: T, k_ln_k: T, tau_inverse: T) -> T {
+    let e2 = k_ln_k + horner(&E2_THIN, k - T::ONE);
+    -(e2 + e2) * tau_inverse
 }
 
 /// −E₂/E₃ for K ≥ 2, from K E₂ = e⁻ᴷ − 2 E₃ with e⁻ᴷ divided out, so that it survives underflow.
@@ -108,10 +119,10 @@ fn scaled_e3<T: Real>(k: T) -> T {
     inverse * horner(&E3_THICK, T::lit(11.0) * inverse - T::ONE)
 }
 
-/// ln x, with a finite value at 0 so that x ln x is 0 there.
+/// K ln K, 0 at K = 0.
 #[inline(always)]
-fn ln_from_zero<T: Real>(x: T) -> T {
-    x.max(T::lit(1e-37)).ln()
+pub(crate) fn k_ln_k<T: Real>(k: T) -> T {
+    k * k.max(T::lit(1e-37)).ln()
 }
 
 /// Polynomial with the highest power first.

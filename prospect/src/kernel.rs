@@ -7,16 +7,16 @@ use leafbrdf_core::Real;
 
 use crate::absorption::Layer;
 use crate::expint::{
-    THICK, Transmission, log_slope_thick, log_slope_thin, transmission, transmission_log_slope, transmission_thick,
+    THICK, Transmission, k_ln_k, log_slope, log_slope_thick, log_slope_thin, transmission_either, transmission_thick,
     transmission_thin,
 };
 use crate::lanes::{Lanes, Task};
 use crate::plate::{Interface, Plate};
-use crate::stack::{Optics, SlopeSeries, Slopes, leaf, leaf_with_slopes};
+use crate::stack::{Decay, Optics, Pair, Reciprocals, SlopeSeries, Slopes, optics, slopes};
 use crate::table::View;
 
 /// Bands worked on together: a multiple of every register width, small enough for the first-level cache.
-pub(crate) const BLOCK: usize = 32;
+pub(crate) const BLOCK: usize = 64;
 
 /// One block of numbers, one a band.
 pub(crate) type Block<L> = [L; BLOCK];
@@ -84,7 +84,7 @@ fn absorption<T: Lanes>(view: &View<'_, T>, layer: &Layer<T>, first: usize) -> B
 
 /// One block of a column, padded with 1 beyond the end.
 #[inline(always)]
-fn load<T: Lanes>(column: &[T], first: usize) -> Block<T::Lane> {
+pub(crate) fn load<T: Lanes>(column: &[T], first: usize) -> Block<T::Lane> {
     let mut block = [T::Lane::ONE; BLOCK];
     let rest = column.get(first..).unwrap_or_default();
     if let Some(whole) = rest.first_chunk::<BLOCK>() {
@@ -119,90 +119,200 @@ fn block<L: Real, S: Sink<T>, T: Lanes<Lane = L>>(
         dr_dn: zero,
         dt_dn: zero,
     };
-    let (tau, absorbed) = transmissions(&k);
+    let side = Side::of(&k);
+    let k_ln_k = logarithms(&k, side);
+    let layers = transmissions(&k, &k_ln_k, side);
+    let mut plates = Plate::padding(zero);
+    let mut pairs = Pair { d: zero, z: zero, half_t: zero, growth: zero };
+    for i in 0..BLOCK {
+        let plate = plate(faces, &layers, i);
+        let Pair { d, z, half_t, growth } = Pair::new(&plate);
+        (pairs.d[i], pairs.z[i], pairs.half_t[i], pairs.growth[i]) = (d, z, half_t, growth);
+        plates.put(i, plate);
+    }
+    let mut decays = Decay { l: zero, y: zero, y_less_one: zero };
+    for i in 0..BLOCK {
+        decays.l[i] = Decay::rate(pairs.growth[i]);
+    }
+    for i in 0..BLOCK {
+        let Decay { y, y_less_one, .. } = Decay::new(decays.l[i], m);
+        (decays.y[i], decays.y_less_one[i]) = (y, y_less_one);
+    }
+    let mut reciprocals = Reciprocals { h: zero, d: zero };
+    for i in 0..BLOCK {
+        let (plate, pair, decay) = (plates.at(i), pairs.at(i), decays.at(i));
+        let reciprocal = Reciprocals::new(&pair, &decay);
+        (reciprocals.h[i], reciprocals.d[i]) = (reciprocal.h, reciprocal.d);
+        let Optics { reflectance, transmittance, absorptance } = optics(&plate, &pair, &decay, &reciprocal);
+        results.reflectance[i] = reflectance;
+        results.transmittance[i] = transmittance;
+        results.absorptance[i] = absorptance;
+    }
     if S::SLOPES {
-        let log_slope = log_slopes(&k, &tau);
+        let mut tau_inverse = zero;
         for i in 0..BLOCK {
-            let plate = plate(faces, &tau, &absorbed, i);
+            // t = t₉₀ t₂₁ τ/(1 − ρ²τ²), and 1/2t is there
+            tau_inverse[i] = (faces[1][i] * faces[2][i]) * plates.inverse[i] * (pairs.half_t[i] + pairs.half_t[i]);
+        }
+        let log_slope = log_slopes(&k, &k_ln_k, &tau_inverse, side);
+        for i in 0..BLOCK {
+            let plate = plates.at(i);
             let slope = plate.slope(log_slope[i]);
-            let (value, slopes) = leaf_with_slopes(&plate, slope, m, series);
-            let Optics { reflectance, transmittance, absorptance } = value;
-            let Slopes { dr_dk, dt_dk, dr_dn, dt_dn } = slopes;
-            results.reflectance[i] = reflectance;
-            results.transmittance[i] = transmittance;
-            results.absorptance[i] = absorptance;
+            let Slopes { dr_dk, dt_dk, dr_dn, dt_dn } =
+                slopes(&plate, slope, &pairs.at(i), &decays.at(i), &reciprocals.at(i), m, series);
             results.dr_dk[i] = dr_dk;
             results.dt_dk[i] = dt_dk;
             results.dr_dn[i] = dr_dn;
             results.dt_dn[i] = dt_dn;
-        }
-    } else {
-        for i in 0..BLOCK {
-            let plate = plate(faces, &tau, &absorbed, i);
-            let Optics { reflectance, transmittance, absorptance } = leaf(&plate, m);
-            results.reflectance[i] = reflectance;
-            results.transmittance[i] = transmittance;
-            results.absorptance[i] = absorptance;
         }
     }
     results
 }
 
 #[inline(always)]
-fn plate<L: Real>(faces: &[Block<L>; 3], tau: &Block<L>, absorbed: &Block<L>, i: usize) -> Plate<L> {
+fn plate<L: Real>(faces: &[Block<L>; 3], layers: &Transmission<Block<L>>, i: usize) -> Plate<L> {
     let [t_alpha, t_90, t_21] = faces;
     let faces = Interface { t_alpha: t_alpha[i], t_90: t_90[i], t_21: t_21[i] };
-    Plate::new(faces, Transmission { tau: tau[i], absorbed: absorbed[i] })
+    Plate::new(faces, Transmission { tau: layers.tau[i], absorbed: layers.absorbed[i] })
 }
 
-/// τ and 1 − τ. Most blocks lie wholly on one side of K = 2, and need one of the two expansions only: same numbers, less work.
-#[inline(always)]
-fn transmissions<L: Real>(k: &Block<L>) -> (Block<L>, Block<L>) {
-    let (mut tau, mut absorbed) = ([L::ZERO; BLOCK], [L::ZERO; BLOCK]);
-    let (thin, thick) = sides(k);
-    if thin {
-        for i in 0..BLOCK {
-            Transmission { tau: tau[i], absorbed: absorbed[i] } = transmission_thin(k[i]);
-        }
-    } else if thick {
-        for i in 0..BLOCK {
-            Transmission { tau: tau[i], absorbed: absorbed[i] } = transmission_thick(k[i]);
-        }
-    } else {
-        for i in 0..BLOCK {
-            Transmission { tau: tau[i], absorbed: absorbed[i] } = transmission(k[i]);
+// Between two loops the parts of all bands of a block are kept column by column.
+
+impl<L: Copy> Plate<Block<L>> {
+    #[inline(always)]
+    fn padding(value: Block<L>) -> Self {
+        Plate { r: value, t: value, a: value, r_top: value, t_top: value, a_top: value, rho_tau: value, inverse: value }
+    }
+
+    #[inline(always)]
+    fn put(&mut self, i: usize, plate: Plate<L>) {
+        self.r[i] = plate.r;
+        self.t[i] = plate.t;
+        self.a[i] = plate.a;
+        self.r_top[i] = plate.r_top;
+        self.t_top[i] = plate.t_top;
+        self.a_top[i] = plate.a_top;
+        self.rho_tau[i] = plate.rho_tau;
+        self.inverse[i] = plate.inverse;
+    }
+
+    #[inline(always)]
+    fn at(&self, i: usize) -> Plate<L> {
+        Plate {
+            r: self.r[i],
+            t: self.t[i],
+            a: self.a[i],
+            r_top: self.r_top[i],
+            t_top: self.t_top[i],
+            a_top: self.a_top[i],
+            rho_tau: self.rho_tau[i],
+            inverse: self.inverse[i],
         }
     }
-    (tau, absorbed)
 }
 
+impl<L: Copy> Pair<Block<L>> {
+    #[inline(always)]
+    fn at(&self, i: usize) -> Pair<L> {
+        Pair { d: self.d[i], z: self.z[i], half_t: self.half_t[i], growth: self.growth[i] }
+    }
+}
+
+impl<L: Copy> Reciprocals<Block<L>> {
+    #[inline(always)]
+    fn at(&self, i: usize) -> Reciprocals<L> {
+        Reciprocals { h: self.h[i], d: self.d[i] }
+    }
+}
+
+impl<L: Copy> Decay<Block<L>> {
+    #[inline(always)]
+    fn at(&self, i: usize) -> Decay<L> {
+        Decay { l: self.l[i], y: self.y[i], y_less_one: self.y_less_one[i] }
+    }
+}
+
+/// K ln K where a block needs it.
 #[inline(always)]
-fn log_slopes<L: Real>(k: &Block<L>, tau: &Block<L>) -> Block<L> {
+fn logarithms<L: Real>(k: &Block<L>, side: Side) -> Block<L> {
+    let mut products = [L::ZERO; BLOCK];
+    if side != Side::Thick {
+        for i in 0..BLOCK {
+            products[i] = k_ln_k(k[i]);
+        }
+    }
+    products
+}
+
+/// τ and 1 − τ.
+#[inline(always)]
+fn transmissions<L: Real>(k: &Block<L>, k_ln_k: &Block<L>, side: Side) -> Transmission<Block<L>> {
+    let (mut tau, mut absorbed) = ([L::ZERO; BLOCK], [L::ZERO; BLOCK]);
+    match side {
+        Side::Thin => {
+            for i in 0..BLOCK {
+                Transmission { tau: tau[i], absorbed: absorbed[i] } = transmission_thin(k[i], k_ln_k[i]);
+            }
+        }
+        Side::Thick => {
+            for i in 0..BLOCK {
+                Transmission { tau: tau[i], absorbed: absorbed[i] } = transmission_thick(k[i]);
+            }
+        }
+        Side::Both => {
+            for i in 0..BLOCK {
+                Transmission { tau: tau[i], absorbed: absorbed[i] } = transmission_either(k[i], k_ln_k[i]);
+            }
+        }
+    }
+    Transmission { tau, absorbed }
+}
+
+/// (dτ/dK)/τ.
+#[inline(always)]
+fn log_slopes<L: Real>(k: &Block<L>, k_ln_k: &Block<L>, tau_inverse: &Block<L>, side: Side) -> Block<L> {
     let mut slopes = [L::ZERO; BLOCK];
-    let (thin, thick) = sides(k);
-    if thin {
-        for i in 0..BLOCK {
-            slopes[i] = log_slope_thin(k[i], tau[i]);
+    match side {
+        Side::Thin => {
+            for i in 0..BLOCK {
+                slopes[i] = log_slope_thin(k[i], k_ln_k[i], tau_inverse[i]);
+            }
         }
-    } else if thick {
-        for i in 0..BLOCK {
-            slopes[i] = log_slope_thick(k[i]);
+        Side::Thick => {
+            for i in 0..BLOCK {
+                slopes[i] = log_slope_thick(k[i]);
+            }
         }
-    } else {
-        for i in 0..BLOCK {
-            slopes[i] = transmission_log_slope(k[i], tau[i]);
+        Side::Both => {
+            for i in 0..BLOCK {
+                slopes[i] = log_slope(k[i], k_ln_k[i], tau_inverse[i]);
+            }
         }
     }
     slopes
 }
 
-/// Whether all K of a block are below 2, and whether all are at or above.
-#[inline(always)]
-fn sides<L: Real>(k: &Block<L>) -> (bool, bool) {
-    let border = L::lit(THICK);
-    let mut below = 0;
-    for value in k {
-        below += usize::from(*value < border);
+/// On which side of K = 2 a block lies. Most lie wholly on one, and need one of the two expansions only: same numbers, less
+/// work.
+#[derive(Clone, Copy, PartialEq)]
+enum Side {
+    Thin,
+    Thick,
+    Both,
+}
+
+impl Side {
+    #[inline(always)]
+    fn of<L: Real>(k: &Block<L>) -> Side {
+        let border = L::lit(THICK);
+        let mut below = 0;
+        for value in k {
+            below += usize::from(*value < border);
+        }
+        match below {
+            BLOCK => Side::Thin,
+            0 => Side::Thick,
+            _ => Side::Both,
+        }
     }
-    (below == BLOCK, below == 0)
 }

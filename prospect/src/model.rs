@@ -2,14 +2,14 @@
 
 use leafbrdf_core::Real;
 
-use crate::absorption::Rules;
+use crate::absorption::{Action, Rules};
 use crate::error::Error;
 use crate::expint::{transmission, transmission_log_slope};
-use crate::kernel::{BLOCK, Block, Results, Sink, Spectrum};
+use crate::kernel::{BLOCK, Block, Results, Sink, Spectrum, load};
 use crate::lanes::{Lanes, widest};
 use crate::params::{LeafParams, Parameter};
 use crate::plate::{Interface, Plate};
-use crate::stack::{self, Optics, SlopeSeries, Slopes};
+use crate::stack::{self, Decay, Optics, Pair, Reciprocals, SlopeSeries, Slopes};
 use crate::table::View;
 
 /// PROSPECT on one table.
@@ -114,7 +114,11 @@ pub fn plates_with_slopes<T: Real>(faces: Interface<T>, k: T, n_struct: T) -> (O
     let layer = transmission(k);
     let plate = Plate::new(faces, layer);
     let slope = plate.slope(transmission_log_slope(k, layer.tau));
-    stack::leaf_with_slopes(&plate, slope, m, &SlopeSeries::new(m))
+    let pair = Pair::new(&plate);
+    let decay = Decay::new(Decay::rate(pair.growth), m);
+    let reciprocals = Reciprocals::new(&pair, &decay);
+    let value = stack::optics(&plate, &pair, &decay, &reciprocals);
+    (value, stack::slopes(&plate, slope, &pair, &decay, &reciprocals, m, &SlopeSeries::new(m)))
 }
 
 /// Room for a spectrum and its derivatives, lent by the caller.
@@ -209,7 +213,8 @@ impl<T: Lanes> Prospect<'_, T> {
         self.fits("transmittance", room.transmittance.len(), 1)?;
         self.fits("d_reflectance", room.d_reflectance.len(), parameters.len())?;
         self.fits("d_transmittance", room.d_transmittance.len(), parameters.len())?;
-        let sink = Rows { view: self.view, rules: self.rules, per_plate: layer.per_plate, parameters, room };
+        let actions = Parameter::ALL.map(|parameter| self.rules.action(self.view.version(), parameter));
+        let sink = Rows { view: self.view, per_plate: layer.per_plate, parameters, actions, room };
         widest(Spectrum { view: self.view, layer, sink });
         Ok(())
     }
@@ -251,9 +256,10 @@ impl<T: Lanes> Sink<T> for Absorptance<'_, T> {
 /// Writes R, T and one run of derivatives for each parameter.
 struct Rows<'a, 's, T> {
     view: View<'a, T>,
-    rules: Rules<T>,
     per_plate: T,
     parameters: &'s [Parameter],
+    /// What each of `Parameter::ALL` does.
+    actions: [Action<T>; Parameter::ALL.len()],
     room: Jacobian<'s, T>,
 }
 
@@ -263,37 +269,40 @@ impl<T: Lanes> Sink<T> for Rows<'_, '_, T> {
     fn take(&mut self, first: usize, results: &Results<T::Lane>) {
         store(self.room.reflectance, first, &results.reflectance);
         store(self.room.transmittance, first, &results.transmittance);
+        // dK/dC = k/N for a constituent
+        let per_plate = self.per_plate.into_lane();
+        let (mut dr, mut dt) = (results.dr_dk, results.dt_dk);
+        for (dr, dt) in dr.iter_mut().zip(&mut dt) {
+            *dr = *dr * per_plate;
+            *dt = *dt * per_plate;
+        }
         let bands = self.view.len();
         let d_reflectance = self.room.d_reflectance.chunks_exact_mut(bands);
         let d_transmittance = self.room.d_transmittance.chunks_exact_mut(bands);
-        let per_plate = self.per_plate.into_lane();
-        for ((&parameter, dr), dt) in self.parameters.iter().zip(d_reflectance).zip(d_transmittance) {
-            if parameter == Parameter::NStruct {
-                // K = S/N with S fixed: dK/dN = −K/N
-                store_with(dr, first, |i| results.dr_dn[i] - results.k[i] * per_plate * results.dr_dk[i]);
-                store_with(dt, first, |i| results.dt_dn[i] - results.k[i] * per_plate * results.dt_dk[i]);
-                continue;
-            }
-            // dK/dC = Σ k_i ∂C_i/∂C / N
-            let mut dk = [T::Lane::ZERO; BLOCK];
-            let slopes = self.rules.content_slopes(self.view.version(), parameter);
-            for (column, slope) in self.view.coefficients().zip(slopes) {
-                if slope != T::ZERO {
-                    let factor = slope.into_lane() * per_plate;
-                    let rest = column.get(first..).unwrap_or_default();
-                    if let Some(whole) = rest.first_chunk::<BLOCK>() {
-                        for (sum, k) in dk.iter_mut().zip(whole) {
-                            *sum += factor * k.into_lane();
-                        }
-                    } else {
-                        for (sum, k) in dk.iter_mut().zip(rest) {
-                            *sum += factor * k.into_lane();
+        for ((&parameter, to_r), to_t) in self.parameters.iter().zip(d_reflectance).zip(d_transmittance) {
+            match self.actions.get(parameter as usize) {
+                Some(Action::Structure) => {
+                    // K = S/N with S fixed: dK/dN = −K/N
+                    store_with(to_r, first, |i| results.dr_dn[i] - results.k[i] * dr[i]);
+                    store_with(to_t, first, |i| results.dt_dn[i] - results.k[i] * dt[i]);
+                }
+                Some(&Action::Content { own, tied }) => {
+                    let mut k = load(self.view.coefficient(own), first);
+                    if let Some((column, ratio)) = tied {
+                        let column = load(self.view.coefficient(column), first);
+                        let ratio = ratio.into_lane();
+                        for (sum, k) in k.iter_mut().zip(column) {
+                            *sum += ratio * k;
                         }
                     }
+                    store_with(to_r, first, |i| dr[i] * k[i]);
+                    store_with(to_t, first, |i| dt[i] * k[i]);
+                }
+                Some(Action::Nothing) | None => {
+                    store_with(to_r, first, |_| T::Lane::ZERO);
+                    store_with(to_t, first, |_| T::Lane::ZERO);
                 }
             }
-            store_with(dr, first, |i| results.dr_dk[i] * dk[i]);
-            store_with(dt, first, |i| results.dt_dk[i] * dk[i]);
         }
     }
 }
@@ -312,8 +321,12 @@ fn store_with<T: Lanes>(to: &mut [T], first: usize, value: impl Fn(usize) -> T::
             *to = T::from_lane(value(i));
         }
     } else {
-        for (i, to) in rest.iter_mut().enumerate().take(BLOCK) {
+        let mut block = [T::ZERO; BLOCK];
+        for (i, to) in block.iter_mut().enumerate() {
             *to = T::from_lane(value(i));
+        }
+        for (to, value) in rest.iter_mut().zip(block) {
+            *to = value;
         }
     }
 }

@@ -43,8 +43,8 @@ pub(crate) struct Plate<T> {
     pub t_top: T,
     pub a_top: T,
     /// ρτ, ρ = 1 − t₂₁ being the reflectivity of a face from inside, and 1/(1 − ρ²τ²).
-    rho_tau: T,
-    inverse: T,
+    pub rho_tau: T,
+    pub inverse: T,
 }
 
 /// Slopes of a plate with respect to its absorption coefficient K.

@@ -37,53 +37,103 @@ pub struct Slopes<T> {
     pub dt_dn: T,
 }
 
-/// Pieces of the pile that value and slopes share.
-#[derive(Clone, Copy)]
-struct Pile<T> {
-    /// D, L, y = e^(−ML) and y − 1.
-    d: T,
-    l: T,
-    y: T,
-    y_less_one: T,
-    /// 1 − y² = 2 y sinh ML and 1 + y² = 2 y cosh ML.
-    odd: T,
-    even: T,
-    /// 1 − r² − t².
-    z: T,
-    /// 1/(Z (1−y²) + D (1+y²)) = 1/(2 D y H).
-    inverse: T,
-    /// 1/2t.
-    half_t: T,
-}
-
 /// Smallest 1 − r − t that enters D: far below what changes any result, and large enough that D > 0 also in `f32`.
 const LEAST_ABSORPTION: f64 = 1e-30;
 
-#[inline(always)]
-fn pile<T: Real>(plate: &Plate<T>, m: T) -> Pile<T> {
-    let Plate { r, t, .. } = *plate;
-    let a = plate.a.max(T::lit(LEAST_ABSORPTION));
-    let d = ((T::ONE + r + t) * (T::ONE + r - t) * (T::ONE - r + t) * a).sqrt();
-    // t may underflow to 0 under extreme absorption. L then only enters y, which multiplies a transmittance of 0.
-    let half_t = T::HALF / t.max(T::lit(8.0) / T::MAX);
-    // e^L − 1 = ((1−t)² − r² + D)/2t, the first two terms as (1−r−t)(1+r−t)
-    let l = ln_1p((a * (T::ONE + r - t) + d) * half_t);
-    let (y, y_less_one) = exp_and_m1(-(m * l));
-    let odd = -(y_less_one * (T::ONE + y));
-    let even = T::ONE + y.squared();
-    let z = (T::ONE - r) * (T::ONE + r) - t.squared();
-    Pile { d, l, y, y_less_one, odd, even, z, inverse: T::ONE / (z * odd + d * even), half_t }
+/// What the pile is made of, from one plate.
+#[derive(Clone, Copy)]
+pub(crate) struct Pair<T> {
+    /// D, and 1 − r² − t².
+    pub d: T,
+    pub z: T,
+    /// 1/2t.
+    pub half_t: T,
+    /// e^L − 1.
+    pub growth: T,
 }
 
+impl<T: Real> Pair<T> {
+    #[inline(always)]
+    pub(crate) fn new(plate: &Plate<T>) -> Self {
+        let Plate { r, t, .. } = *plate;
+        let a = plate.a.max(T::lit(LEAST_ABSORPTION));
+        let d = ((T::ONE + r + t) * (T::ONE + r - t) * (T::ONE - r + t) * a).sqrt();
+        // t may underflow to 0 under extreme absorption. L then only enters y, which multiplies a transmittance of 0.
+        let half_t = T::HALF / t.max(T::lit(8.0) / T::MAX);
+        // e^L − 1 = ((1−t)² − r² + D)/2t, the first two terms as (1−r−t)(1+r−t)
+        let growth = (a * (T::ONE + r - t) + d) * half_t;
+        Pair { d, z: (T::ONE - r) * (T::ONE + r) - t.squared(), half_t, growth }
+    }
+}
+
+/// How light fades on its way down the M lower plates.
+#[derive(Clone, Copy)]
+pub(crate) struct Decay<T> {
+    /// L, y = e^(−ML) and y − 1.
+    pub l: T,
+    pub y: T,
+    pub y_less_one: T,
+}
+
+impl<T: Real> Decay<T> {
+    /// L from e^L − 1.
+    #[inline(always)]
+    pub(crate) fn rate(growth: T) -> T {
+        ln_1p(growth)
+    }
+
+    #[inline(always)]
+    pub(crate) fn new(l: T, m: T) -> Self {
+        let (y, y_less_one) = exp_and_m1(-(m * l));
+        Decay { l, y, y_less_one }
+    }
+
+    /// 1 − y² = 2 y sinh ML.
+    #[inline(always)]
+    fn odd(&self) -> T {
+        -(self.y_less_one * (T::ONE + self.y))
+    }
+
+    /// 1 + y² = 2 y cosh ML.
+    #[inline(always)]
+    fn even(&self) -> T {
+        T::ONE + self.y.squared()
+    }
+}
+
+/// The two reciprocals of a pile, from one division.
+#[derive(Clone, Copy)]
+pub(crate) struct Reciprocals<T> {
+    /// 1/(Z (1−y²) + D (1+y²)) = 1/(2 D y H).
+    pub h: T,
+    /// 1/D.
+    pub d: T,
+}
+
+impl<T: Real> Reciprocals<T> {
+    #[inline(always)]
+    pub(crate) fn new(pair: &Pair<T>, decay: &Decay<T>) -> Self {
+        let h = pair.z * decay.odd() + pair.d * decay.even();
+        let both = T::ONE / (pair.d * h);
+        Reciprocals { h: pair.d * both, d: h * both }
+    }
+}
+
+/// The leaf from its parts.
 #[inline(always)]
-fn optics<T: Real>(plate: &Plate<T>, pile: &Pile<T>) -> Optics<T> {
+pub(crate) fn optics<T: Real>(
+    plate: &Plate<T>,
+    pair: &Pair<T>,
+    decay: &Decay<T>,
+    reciprocals: &Reciprocals<T>,
+) -> Optics<T> {
     // T_top/(2 D y H)
-    let scaled = plate.t_top * pile.inverse;
+    let scaled = plate.t_top * reciprocals.h;
     // cosh ML − 1 = (1−y)²/2y
-    let held = plate.a * (T::ONE + plate.r + plate.t) * pile.odd + pile.d * pile.y_less_one.squared();
+    let held = plate.a * (T::ONE + plate.r + plate.t) * decay.odd() + pair.d * decay.y_less_one.squared();
     Optics {
-        reflectance: plate.r_top + T::TWO * plate.r * plate.t * pile.odd * scaled,
-        transmittance: T::TWO * pile.d * pile.y * scaled,
+        reflectance: plate.r_top + T::TWO * plate.r * plate.t * decay.odd() * scaled,
+        transmittance: T::TWO * pair.d * decay.y * scaled,
         absorptance: plate.a_top + held * scaled,
     }
 }
@@ -91,48 +141,52 @@ fn optics<T: Real>(plate: &Plate<T>, pile: &Pile<T>) -> Optics<T> {
 /// Reflectance, transmittance and absorptance of a leaf of 1 + `m` plates.
 #[inline(always)]
 pub(crate) fn leaf<T: Real>(plate: &Plate<T>, m: T) -> Optics<T> {
-    optics(plate, &pile(plate, m))
+    let pair = Pair::new(plate);
+    let decay = Decay::new(Decay::rate(pair.growth), m);
+    optics(plate, &pair, &decay, &Reciprocals::new(&pair, &decay))
 }
 
-/// The same with the exact slopes, in one pass.
+/// The exact slopes of the leaf, from the same parts.
 #[inline(always)]
-pub(crate) fn leaf_with_slopes<T: Real>(
+pub(crate) fn slopes<T: Real>(
     plate: &Plate<T>,
     slope: PlateSlope<T>,
+    pair: &Pair<T>,
+    decay: &Decay<T>,
+    reciprocals: &Reciprocals<T>,
     m: T,
     series: &SlopeSeries<T>,
-) -> (Optics<T>, Slopes<T>) {
-    let pile = pile(plate, m);
-    let value = optics(plate, &pile);
+) -> Slopes<T> {
     let Plate { r, t, .. } = *plate;
-    let y = T::ONE + pile.y_less_one;
-    let d_inverse = T::ONE / pile.d;
+    let y = decay.y;
+    let d_inverse = reciprocals.d;
     // y Q, y cosh ML and 1/(y H)
-    let q = T::HALF * pile.odd * d_inverse;
-    let cosh = T::HALF * pile.even;
-    let h_inverse = T::TWO * pile.d * pile.inverse;
+    let q = T::HALF * decay.odd() * d_inverse;
+    let cosh = T::HALF * decay.even();
+    let h_inverse = T::TWO * pair.d * reciprocals.h;
+    let transmittance = plate.t_top * y * h_inverse;
 
     // ∂/∂N at constant K: Q' = (L/D) cosh ML, (cosh ML)' = L D Q, and cosh² − D²Q² = 1 leaves one term in R'.
-    let l_by_d = pile.l * d_inverse;
-    let h_n = pile.z * l_by_d * cosh + pile.l * pile.d * q;
-    let dt_dn = -(value.transmittance * h_n * h_inverse);
+    let l_by_d = decay.l * d_inverse;
+    let h_n = pair.z * l_by_d * cosh + decay.l * pair.d * q;
+    let dt_dn = -(transmittance * h_n * h_inverse);
     let dr_dn = T::TWO * r * t * plate.t_top * l_by_d * (y * h_inverse).squared();
 
     // ∂/∂K at constant N. With e = D dL/dK:  Q' = V e − Q t'/t,  (cosh ML)' = M Q e,  V = (M cosh ML − 2t cosh L · Q)/D².
-    let e = -(slope.log_t * pile.z + T::TWO * r * slope.r);
+    let e = -(slope.log_t * pair.z + T::TWO * r * slope.r);
     let b = (T::ONE - r) * (T::ONE + r) + t.squared();
     // V loses its digits as D → 0; there it is M B/(4t³) Σ k aₖ q^(k−1), q = sinh²L.
-    let sinh2_l = (pile.d * pile.half_t).squared();
-    let v_series = m * b * T::TWO * pile.half_t * pile.half_t.squared() * y * series.sum(sinh2_l);
+    let sinh2_l = (pair.d * pair.half_t).squared();
+    let v_series = m * b * T::TWO * pair.half_t * pair.half_t.squared() * y * series.sum(sinh2_l);
     let v_plain = (m * cosh - b * q) * d_inverse.squared();
     let v = if sinh2_l < series.largest { v_series } else { v_plain };
     let q_k = v * e - q * slope.log_t;
     let z_k = -(T::TWO * (r * slope.r + t.squared() * slope.log_t));
-    let h_k = (z_k * q + pile.z * q_k + m * q * e) * h_inverse;
-    let dt_dk = value.transmittance * (slope.log_t - h_k);
+    let h_k = (z_k * q + pair.z * q_k + m * q * e) * h_inverse;
+    let dt_dk = transmittance * (slope.log_t - h_k);
     let dr_dk =
         slope.r_top + T::TWO * t * plate.t_top * h_inverse * (slope.r * q + r * v * e + r * q * (slope.log_t - h_k));
-    (value, Slopes { dr_dk, dt_dk, dr_dn, dt_dn })
+    Slopes { dr_dk, dt_dk, dr_dn, dt_dn }
 }
 
 /// Terms kept of the series of V.

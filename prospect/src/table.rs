@@ -368,6 +368,11 @@ impl<'a, T: Real> View<'a, T> {
         self.k.iter().copied().take(self.version.constituents().len())
     }
 
+    /// One column of coefficients; empty beyond the version's constituents.
+    pub(crate) fn coefficient(&self, column: usize) -> &'a [T] {
+        self.k.get(column).copied().unwrap_or_default()
+    }
+
     /// A run of neighbouring bands; `None` outside the table.
     #[must_use]
     pub fn bands(&self, range: core::ops::Range<usize>) -> Option<View<'a, T>> {
