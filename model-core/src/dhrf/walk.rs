@@ -69,6 +69,7 @@ pub(super) fn walk<T: Real, R: Rule>(plane: &SlopePlane<T>, sigma: T, mut visit:
         Segment { from: b2.max(tan), to: x1, anchors: (x0, x1), plateau: Plateau::None, offset: c.ax2 },
     ];
     let reach = T::lit(c.lx) * sigma;
+    let excess = excess_roughness(sigma);
     for segment in segments {
         let from = segment.from.max(-reach);
         let to = segment.to.min(reach);
@@ -92,7 +93,8 @@ pub(super) fn walk<T: Real, R: Rule>(plane: &SlopePlane<T>, sigma: T, mut visit:
             });
             continue;
         }
-        let order = order_of(T::lit(c.ax + segment.offset) + T::lit(c.bx) * ((to - from) / sigma), R::LEGENDRE_ORDERS);
+        let wish = T::lit(c.ax + segment.offset) + T::lit(c.bx) * ((to - from) / sigma) + T::lit(c.rough_x) * excess;
+        let order = order_of(wish, R::LEGENDRE_ORDERS);
         let (a, b) = segment.anchors;
         let span = b - a;
         let theta = |x: T| ((x - a) / span).max(T::ZERO).sqrt().min(T::ONE).asin();
@@ -129,7 +131,8 @@ fn walk_column<T: Real, R: Rule>(plane: &SlopePlane<T>, sigma: T, column: &Colum
     let c: Constants = R::CONSTANTS;
     let Column { x, u, horizon, .. } = *column;
     let u2 = u.squared();
-    let fewer = T::lit(c.cu) * u2;
+    let excess = excess_roughness(sigma);
+    let more = T::lit(c.rough_y) * excess - T::lit(c.cu) * u2;
     let cos_base = plane.cos_theta_s + x * plane.sin_theta_s;
     let one_x2 = T::ONE + x.squared();
 
@@ -153,11 +156,9 @@ fn walk_column<T: Real, R: Rule>(plane: &SlopePlane<T>, sigma: T, column: &Colum
     let reach = (T::lit(c.ly * c.ly) - T::lit(c.kap) * u2).max(T::ONE).sqrt();
     let top = (horizon / sigma).min(reach);
     let edge = column.edge / sigma;
-    let full = |m: usize| if 2 * m > R::LEGENDRE_ORDERS { R::LEGENDRE_ORDERS / 2 * 2 } else { 2 * m };
-
     if edge <= T::ZERO {
-        let m = order_of(T::lit(c.a1) - fewer + T::lit(c.b1) * top, R::LEGENDRE_ORDERS);
-        for (z, weight) in R::LEGENDRE.half(full(m)) {
+        let m = order_of(T::lit(c.a1) + more + T::lit(c.b1) * top, R::LEGENDRE_ORDERS / 2);
+        for (z, weight) in R::LEGENDRE.half(2 * m) {
             node(top * z, weight * top, None);
         }
         return;
@@ -165,10 +166,10 @@ fn walk_column<T: Real, R: Rule>(plane: &SlopePlane<T>, sigma: T, column: &Colum
 
     // v = p q/√(1 − q²) gathers the nodes where the Gaussian is
     let end = edge.min(reach);
-    let m = order_of(T::lit(c.a1) - fewer + T::lit(c.b1) * end, R::LEGENDRE_ORDERS);
-    let p = T::lit(c.py);
+    let m = order_of(T::lit(c.a1) + more + T::lit(c.b1) * end, R::LEGENDRE_ORDERS / 2);
+    let p = T::lit(c.py) / (T::ONE + T::lit(c.rough_p) * excess);
     let q_end = end / (p.squared() + end.squared()).sqrt();
-    for (z, weight) in R::LEGENDRE.half(full(m)) {
+    for (z, weight) in R::LEGENDRE.half(2 * m) {
         let q = q_end * z;
         let inverse = T::ONE / (T::ONE - q.squared());
         let p_root = p * inverse.sqrt();
@@ -177,7 +178,7 @@ fn walk_column<T: Real, R: Rule>(plane: &SlopePlane<T>, sigma: T, column: &Colum
 
     let half_width = T::HALF * (top - edge);
     if half_width > T::ZERO {
-        let order = order_of(T::lit(c.a2) - fewer + T::lit(2.0 * c.b2) * half_width, R::LEGENDRE_ORDERS);
+        let order = order_of(T::lit(c.a2) + more + T::lit(2.0 * c.b2) * half_width, R::LEGENDRE_ORDERS);
         let middle = edge + half_width;
         R::LEGENDRE.whole(order, |z: T, weight: T| node(middle + half_width * z, weight * half_width, None));
     }
@@ -205,6 +206,13 @@ fn smooth<T: Real, R: Rule>(plane: &SlopePlane<T>, sigma: T, visit: &mut impl Fn
             });
         }
     });
+}
+
+/// σ − 1 on very rough surfaces, else 0: there the scale of the integrand is that of 1 + x² + y², no longer the Gaussian's.
+/// Stays at 1 beyond σ = 2, where the tables end and no accuracy is promised.
+#[inline(always)]
+fn excess_roughness<T: Real>(sigma: T) -> T {
+    (sigma - T::ONE).max(T::ZERO).min(T::ONE)
 }
 
 /// The number of nodes for a wish `v`: rounded up, at least 1, at most what the table holds.
