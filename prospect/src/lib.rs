@@ -13,6 +13,7 @@ mod lanes;
 mod model;
 mod params;
 mod plate;
+pub mod sensor;
 mod stack;
 pub mod table;
 

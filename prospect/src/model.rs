@@ -273,8 +273,8 @@ impl<T: Lanes> Sink<T> for Rows<'_, '_, T> {
         let per_plate = self.per_plate.into_lane();
         let (mut dr, mut dt) = (results.dr_dk, results.dt_dk);
         for (dr, dt) in dr.iter_mut().zip(&mut dt) {
-            *dr = *dr * per_plate;
-            *dt = *dt * per_plate;
+            *dr *= per_plate;
+            *dt *= per_plate;
         }
         let bands = self.view.len();
         let d_reflectance = self.room.d_reflectance.chunks_exact_mut(bands);

@@ -398,8 +398,8 @@ impl<'a, T: Real> View<'a, T> {
 
     /// The table at other wavelengths, each column interpolated linearly between its neighbours.
     ///
-    /// Exact at the table's own wavelengths. Between those of the 1 nm tables it is as good as the tables themselves: the
-    /// difference from a cubic through four neighbours stays below what the published digits leave open.
+    /// Exact at the table's own wavelengths. Half-way between those of the 1 nm tables, the reflectance of a green leaf differs
+    /// by at most 2e-4 (at the red edge) from the mean of its neighbours, and t_av by less than 1e-6 from that of the interpolated n.
     ///
     /// - `wavelengths`: nm, rising, inside the table.
     /// - `columns`: room for [`columns_of`] the version × the number of wavelengths.
