@@ -40,7 +40,7 @@ fn spectrum(version: Version, leaf: &LeafParams<f64>) -> (Vec<f64>, Vec<f64>) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(256) })]
 
     #[test]
     fn light_is_reflected_transmitted_or_absorbed_and_never_made((version, leaf) in case()) {
