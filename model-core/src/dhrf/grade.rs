@@ -1,4 +1,10 @@
 //! The grades: constants of the rule, and how large a table each one needs.
+//!
+//! The constants were found by a random search (one step at a time, kept if better) on about 1,000 points (θ_s, σ) to 89.9°,
+//! each with F ≡ 1, four real and three complex indices, against a rule of some 20,000 nodes. E4d: smallest error of value
+//! and derivatives below a given number of nodes; E6 and E8: fewest nodes below a given error; E10: nodes added to an
+//! earlier search's result until the tail it cuts off no longer showed. They are what was found, not proven minima. The
+//! errors that `Grade` states are from other points than these.
 
 use super::table::{Hermite, Legendre, Table, entries};
 
@@ -62,6 +68,7 @@ pub(super) trait Rule {
     const HERMITE: Table;
 }
 
+/// See `Grade::E4d`; likewise below.
 pub(super) struct E4d;
 pub(super) struct E6;
 pub(super) struct E8;
