@@ -3,7 +3,9 @@
 mod common;
 
 use common::Table;
-use leafbrdf_core::{Absorbing, Angle, Dielectric, Geometry, Grade, Illumination, Index, Normalization, Real, Surface};
+use leafbrdf_core::{
+    Absorbing, Angle, Dielectric, Geometry, Grade, Illumination, Index, Normalization, Portable, Real, Surface,
+};
 
 /// F ≡ ½: half of a perfect mirror's DHRF, far from the bound 1 at which a result is cut.
 #[derive(Clone, Copy)]
@@ -325,6 +327,19 @@ fn check_range<T: Real>(theta_s: f64, sigma: f64, grade: Grade) {
     }
     let mirror = T::TWO * illumination.dhrf(HalfMirror, sigma, grade);
     assert!(mirror >= T::ZERO && mirror < T::lit(1.01), "{grade:?} {theta_s} {sigma:?}: {mirror:?}");
+}
+
+/// Only `exp` differs, by one unit in the last place.
+#[test]
+fn portable_arithmetic_gives_the_same() {
+    for i in 0..500 {
+        let (theta_s, sigma, n) = scattered(i);
+        let (theta_s, sigma, n) = (f64::from(theta_s), f64::from(sigma), f64::from(n));
+        let portable = Illumination::new(Angle::from_degrees(Portable(theta_s))).unwrap();
+        let value = portable.dhrf(Dielectric::new(Portable(n)).unwrap(), Portable(sigma), Grade::E10);
+        let error = relative(value.0, dhrf(n, sigma, theta_s, Grade::E10));
+        assert!(error < 1e-14, "n={n} sigma={sigma} theta_s={theta_s}: {error:e}");
+    }
 }
 
 #[test]
