@@ -4,16 +4,20 @@
 //! `cargo fuzz run --features libfuzzer TARGET` (or `just fuzz`) looks for new input; `cargo test -p leafbrdf-fuzz`
 //! replays the files in `corpus/`, the regressions among them, on stable Rust. Both call these functions.
 
+mod bands;
 mod dhrf;
 mod gradient;
 mod input;
 mod mirror;
+mod readers;
 mod surface;
 
+pub use bands::bands;
 pub use dhrf::dhrf;
 pub use gradient::gradient;
 pub use input::Input;
 pub(crate) use mirror::Mirror;
+pub use readers::readers;
 pub use surface::{surface_complex, surface_f32, surface_f64};
 
 /// A function that panics where its laws are broken on the bytes given.
@@ -26,4 +30,6 @@ pub const TARGETS: &[(&str, Target)] = &[
     ("surface_complex", surface_complex),
     ("gradient", gradient),
     ("dhrf", dhrf),
+    ("bands", bands),
+    ("readers", readers),
 ];
