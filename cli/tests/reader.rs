@@ -191,6 +191,9 @@ fn every_line_end_and_the_byte_order_mark_give_the_same_measurement() {
     assert_eq!(one(WIDE.replace('\n', "\r")), plain, "old Macintosh");
     assert_eq!(one(format!("\u{feff}{WIDE}")), plain, "byte order mark");
     assert_eq!(one(WIDE.trim_end()), plain, "no line end at the end");
+    let remark = one(format!("{WIDE}# the end"));
+    assert_eq!(Measurement { metadata: plain.metadata.clone(), ..remark }, plain, "a remark in an unended last line");
+    assert_eq!(one(format!("{LONG}#")), one(LONG), "an empty one");
     assert_eq!(one(WIDE.replace("\n4", "\n\n4") + "\n\n"), plain, "blank lines");
 }
 

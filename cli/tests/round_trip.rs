@@ -205,6 +205,27 @@ proptest! {
     }
 
     #[test]
+    fn the_one_pass_reader_says_what_the_csv_crate_says(
+        edits in prop::collection::vec((any::<prop::sample::Index>(), 0_usize..4, "[0-9.,\n#:eN -]{0,6}|NaN|NA|\r"), 0..5),
+    ) {
+        let mut text = WIDE.to_string();
+        for (place, removed, inserted) in edits {
+            let start = place.index(text.len().max(1)).min(text.len());
+            let end = (start + removed).min(text.len());
+            text.replace_range(start..end, &inserted);
+        }
+        // A remark with a quote sends the same rows through the `csv` crate.
+        let read = |remark: &str| read_bytes("leaf.csv", format!("{remark}\n{text}").as_bytes(), &ReadOptions::default());
+        match (read("#"), read("# \"")) {
+            (Ok(one_pass), Ok(mut csv)) => {
+                csv[0].metadata = one_pass[0].metadata.clone();
+                same(&one_pass[0], &csv[0])?;
+            }
+            (one_pass, csv) => prop_assert_eq!(one_pass.err(), csv.err()),
+        }
+    }
+
+    #[test]
     fn no_text_like_a_measurement_makes_the_reader_panic(
         lines in prop::collection::vec(
             "(# quantity: brf|theta_s_deg|theta_v_deg|phi_v_deg|wavelength_nm|brf|sample|sd|[0-9.,\"#\r-]{0,12}|NaN|é)(,(theta_s_deg|theta_v_deg|phi_v_deg|brdf|sd|sample|[0-9.e\" -]{0,5}|NA)){0,6}",

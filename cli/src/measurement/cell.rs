@@ -49,44 +49,44 @@ fn trim_slowly(mut cell: &[u8]) -> &[u8] {
 #[inline]
 pub(crate) fn parse(cell: &[u8]) -> Cell {
     match parse_short(cell) {
-        Some(number) => Cell::Number(number),
-        None => parse_any(trim(cell)),
+        Some((number, length)) if length == cell.len() => Cell::Number(number),
+        _ => parse_any(trim(cell)),
     }
 }
 
-/// `[-]digits[.digits]` with at most 18 digits and a mantissa up to 2⁵³, else `None`.
+/// `[-]digits[.digits]` up to a comma or the end, and how many bytes that is; `None` for anything else, for more than 18
+/// digits and for mantissas above 2⁵³.
 ///
 /// Mantissa and power of ten are exact then, so their quotient is the correctly rounded value (Clinger 1990): the bits
 /// are those of the general algorithm.
 #[inline]
-fn parse_short(cell: &[u8]) -> Option<f64> {
-    let (negative, digits) = match cell {
-        [b'-', rest @ ..] => (true, rest),
-        _ => (false, cell),
-    };
-    if digits.is_empty() || digits.len() > 19 {
-        return None;
-    }
+pub(crate) fn parse_short(cells: &[u8]) -> Option<(f64, usize)> {
+    let negative = cells.first() == Some(&b'-');
+    let first = usize::from(negative);
     let mut mantissa = 0_u64;
     let mut after_point = None;
-    for (index, &byte) in digits.iter().enumerate() {
+    let mut end = first;
+    while let Some(&byte) = cells.get(end) {
         let digit = byte.wrapping_sub(b'0');
         if digit <= 9 {
             mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
+        } else if byte == b',' {
+            break;
         } else if byte == b'.' && after_point.is_none() {
-            after_point = Some(index + 1);
+            after_point = Some(end + 1);
         } else {
             return None;
         }
+        end += 1;
     }
-    // A point alone, and nineteen digits without a point, which may have run over.
-    let has_digit = digits.len() > usize::from(after_point.is_some());
-    if !has_digit || mantissa > 1 << 53 || (digits.len() == 19 && after_point.is_none()) {
+    // Nothing or a point alone, and nineteen digits or more, which may have run over.
+    let digits = end - first - usize::from(after_point.is_some());
+    if digits == 0 || digits > 18 || mantissa > 1 << 53 {
         return None;
     }
-    let decimals = after_point.map_or(0, |point| digits.len() - point);
+    let decimals = after_point.map_or(0, |point| end - point);
     let magnitude = mantissa as f64 / POWERS_OF_TEN.get(decimals)?;
-    Some(if negative { -magnitude } else { magnitude })
+    Some((if negative { -magnitude } else { magnitude }, end))
 }
 
 #[inline(never)]

@@ -33,6 +33,13 @@ pub(super) fn twice(directions: &[Direction]) -> Option<(usize, usize)> {
     directions.iter().enumerate().find_map(again)
 }
 
+/// The number at the beginning of a row's remaining cells, where it is written plainly, and how many bytes it takes up
+/// to the comma or the end. `None`: [`number`] has to look at the cell.
+#[inline]
+pub(super) fn plain_number(kind: Kind, cells: &[u8]) -> Option<(f64, usize)> {
+    cell::parse_short(cells).filter(|(number, _)| kind.holds(*number))
+}
+
 impl Kind {
     #[inline]
     fn holds(self, number: f64) -> bool {

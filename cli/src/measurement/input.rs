@@ -82,6 +82,14 @@ pub(crate) fn decode<'a>(name: &str, bytes: &'a [u8]) -> Result<Cow<'a, str>, Re
         }
     };
     let text = without_mark(text);
+    let text = if text.is_empty() || text.ends_with(['\n', '\r']) {
+        text
+    } else {
+        // A remark in the last line, unended, would come out of the `csv` reader as a row.
+        let mut text = text.into_owned();
+        text.push('\n');
+        Cow::Owned(text)
+    };
     Ok(if memchr::memchr(b'\r', text.as_bytes()).is_some() {
         // Windows, and Macs of the last century.
         Cow::Owned(text.replace("\r\n", "\n").replace('\r', "\n"))

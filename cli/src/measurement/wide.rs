@@ -3,7 +3,7 @@
 use csv::ByteRecord;
 
 use super::cell::{shown, trim};
-use super::check::{self, Kind, number};
+use super::check::{self, Kind, number, plain_number};
 use super::input::{Source, at};
 use super::read::{ANGLES, Context};
 use super::{Azimuth, Direction, Layout, Measurement, Quantity, ReadError, azimuth};
@@ -21,18 +21,33 @@ pub(super) fn read(context: Context<'_>) -> Result<Measurement, ReadError> {
     // there are cells.
     let mut values = Vec::with_capacity((bands * directions.len()).min(source.text.len()));
 
-    while source.next(&mut records, &mut record)? {
-        same_width(source, &record, width)?;
-        let mut cells = record.iter().enumerate();
-        let wavelength = cells.next().map_or(&b""[..], |(_, cell)| cell);
-        let wavelength =
-            number(Kind::Wavelength, wavelength).map_err(|why| in_first_cell(source, &record, wavelength, why))?;
-        wavelengths.push((wavelength, at(&record)));
-        for (index, cell) in cells {
-            match number(Kind::Value, cell) {
-                Ok(value) => values.push(value),
-                Err(why) => return Err(source.error(at(&record), Some(index + 1), why)),
+    if memchr::memchr(b'"', source.text.as_bytes()).is_some() {
+        while source.next(&mut records, &mut record)? {
+            wavelengths.push((row(source, &record, width, &mut values)?, at(&record)));
+        }
+    } else {
+        // Without quotes a line is a row and a comma ends a cell: no need for a copy of either.
+        let mut start = usize::try_from(records.position().byte()).unwrap_or(usize::MAX);
+        while let Some(rest) = source.text.as_bytes().get(start..).filter(|rest| !rest.is_empty()) {
+            let end = memchr::memchr(b'\n', rest).unwrap_or(rest.len());
+            let line = rest.get(..end).unwrap_or(rest);
+            if !matches!(line, [] | [b'#', ..]) {
+                let whole_rows = values.len();
+                let wavelength = match plain_row(line, width, &mut values) {
+                    Some(wavelength) => wavelength,
+                    None => {
+                        // Once more, at leisure, for the cells that are no plain numbers and for the errors.
+                        values.truncate(whole_rows);
+                        let mut record: ByteRecord = line.split(|byte| *byte == b',').collect();
+                        let mut position = csv::Position::new();
+                        position.set_byte(start as u64);
+                        record.set_position(Some(position));
+                        row(source, &record, width, &mut values)?
+                    }
+                };
+                wavelengths.push((wavelength, start as u64));
             }
+            start += end + 1;
         }
     }
     let (wavelengths_nm, values) = ascending(source, &wavelengths, values, directions.len())?;
@@ -58,6 +73,36 @@ pub(super) fn read(context: Context<'_>) -> Result<Measurement, ReadError> {
         values,
         sd: None,
     })
+}
+
+/// Appends the values of a row to `values`; its wavelength.
+fn row(source: Source<'_>, record: &ByteRecord, width: usize, values: &mut Vec<f64>) -> Result<f64, ReadError> {
+    same_width(source, record, width)?;
+    let mut cells = record.iter().enumerate();
+    let wavelength = cells.next().map_or(&b""[..], |(_, cell)| cell);
+    let wavelength =
+        number(Kind::Wavelength, wavelength).map_err(|why| in_first_cell(source, record, wavelength, why))?;
+    for (index, cell) in cells {
+        match number(Kind::Value, cell) {
+            Ok(value) => values.push(value),
+            Err(why) => return Err(source.error(at(record), Some(index + 1), why)),
+        }
+    }
+    Ok(wavelength)
+}
+
+/// The same in one pass over the bytes, for a row of `width` plain numbers; `None` for any other, `values` being undone
+/// by the caller.
+#[inline]
+fn plain_row(line: &[u8], width: usize, values: &mut Vec<f64>) -> Option<f64> {
+    let (wavelength, mut end) = plain_number(Kind::Wavelength, line)?;
+    for _ in 1..width {
+        let cells = line.get(end + 1..)?;
+        let (value, length) = plain_number(Kind::Value, cells)?;
+        values.push(value);
+        end += 1 + length;
+    }
+    (end == line.len()).then_some(wavelength)
 }
 
 fn quantity(context: &Context<'_>) -> Result<Quantity, ReadError> {
