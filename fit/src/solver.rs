@@ -1,8 +1,10 @@
-//! Bounded minimisation by Newton steps that stay inside the box (Coleman and Li 1996, an interior trust region).
+//! Bounded minimisation by damped Newton steps that stay inside the box.
 //!
-//! Each step solves M s = −g with M = H + diag((|g_i| + λ)/v_i), v_i being the distance to the bound that −g_i points at:
-//! a parameter that is driven against its bound approaches it quadratically and never leaves the others behind, as it
-//! does where parameters are clamped. H is the exact Hessian where that is positive definite, else Gauss and Newton's.
+//! Each step solves M s = −g with M = H + diag(λ/v_i), v_i being the distance to the bound that −g_i points at, so that damping
+//! holds back first what is near its bound (the scaling of Coleman and Li 1996). A parameter whose step would leave the box
+//! goes 99.5 % of the way to its bound, and the others are solved for again, knowing that: it approaches the bound by a factor
+//! of 200 a step, never touches it, and never leaves the others behind, as happens where parameters are clamped or where the
+//! whole step is cut. H is the exact Hessian where that is positive definite, else Gauss and Newton's.
 
 use leafbrdf_core::Real;
 
@@ -96,15 +98,20 @@ pub fn minimize<T: Real, const P: usize, O: Objective<T, P>>(
     while iterations < options.max_iterations {
         iterations += 1;
         let distance = distances(&x, &here.gradient, bounds);
-        let Some(step) = propose(&here, &distance, &mut lambda) else {
+        let Some(step) = propose(&here, &x, bounds, &distance, &mut lambda) else {
             termination = Termination::AtRounding;
             break;
         };
         let (trial, step) = shorten(&x, &step, bounds, &options.max_step);
-        let predicted = predicted_decrease(&here, &step, &distance);
-        if predicted <= options.tolerance * here.cost {
+        let predicted = predicted_decrease(&here, &step);
+        if predicted.abs() <= options.tolerance * here.cost {
             termination = Termination::Converged;
             break;
+        }
+        if predicted < T::ZERO {
+            // parameters sent to their bounds spoil the step of the others: hold back
+            lambda = (T::lit(8.0) * lambda).max(T::lit(0.25) * largest_abs(&here.gradient));
+            continue;
         }
         let there = objective.evaluate(&trial);
         let actual = here.cost - there.cost;
@@ -141,18 +148,24 @@ fn distances<T: Real, const P: usize>(x: &[T; P], gradient: &[T; P], bounds: &[I
     core::array::from_fn(|i| if gradient[i] < T::ZERO { bounds[i].upper - x[i] } else { x[i] - bounds[i].lower })
 }
 
-/// The step −M⁻¹g, or `None` where even a strongly damped M is not positive definite (nothing finite is left).
+/// The damped step, with blocked parameters on the way to their bounds; `None` where even a strongly damped M is not positive
+/// definite (nothing finite is left).
 #[inline(always)]
-fn propose<T: Real, const P: usize>(here: &Evaluation<T, P>, distance: &[T; P], lambda: &mut T) -> Option<[T; P]> {
+fn propose<T: Real, const P: usize>(
+    here: &Evaluation<T, P>,
+    x: &[T; P],
+    bounds: &[Interval<T>; P],
+    distance: &[T; P],
+    lambda: &mut T,
+) -> Option<[T; P]> {
     let largest = largest_abs(&here.gradient);
     for attempt in 0..24_u32 {
-        let curvature = if attempt == 0 { &here.hessian } else { &here.gauss_newton };
-        let mut m = *curvature;
+        let mut m = if attempt == 0 { here.hessian } else { here.gauss_newton };
         for i in 0..P {
-            m[i][i] += (here.gradient[i].abs() + *lambda) / distance[i];
+            m[i][i] += *lambda / distance[i];
         }
-        if let Some(step) = crate::linear::solve_spd(&m, &here.gradient) {
-            return Some(step.map(|s| -s));
+        if let Some(step) = solve_inside(&m, &here.gradient, x, bounds) {
+            return Some(step);
         }
         if attempt > 0 {
             *lambda = (T::lit(8.0) * *lambda).max(T::lit(1e-3) * largest);
@@ -161,7 +174,56 @@ fn propose<T: Real, const P: usize>(here: &Evaluation<T, P>, distance: &[T; P], 
     None
 }
 
-/// The step cut to the longest allowed one and to 99.5 % of the way to the nearest bound, and the point it leads to.
+/// −M⁻¹g inside the box: while a parameter's step would leave it, the one that leaves it first (as a share of its step) is
+/// sent 99.5 % of the way to its bound, and the rest is solved for again.
+#[inline(always)]
+fn solve_inside<T: Real, const P: usize>(
+    m: &[[T; P]; P],
+    gradient: &[T; P],
+    x: &[T; P],
+    bounds: &[Interval<T>; P],
+) -> Option<[T; P]> {
+    let mut held: [Option<T>; P] = [None; P];
+    let mut step = crate::linear::solve_spd(m, gradient)?.map(|s| -s);
+    for _ in 0..P {
+        let mut first: Option<(usize, T, T)> = None;
+        for i in 0..P {
+            let s = step[i];
+            let room = if s < T::ZERO { bounds[i].lower - x[i] } else { bounds[i].upper - x[i] };
+            if held[i].is_none() && s.abs() >= room.abs() {
+                let share = room / s;
+                if first.is_none_or(|(_, least, _)| share < least) {
+                    first = Some((i, share, T::lit(0.995) * room));
+                }
+            }
+        }
+        let Some((i, _, s)) = first else { break };
+        held[i] = Some(s);
+        let mut reduced = *m;
+        let mut right = gradient.map(|g| -g);
+        for i in 0..P {
+            if let Some(s) = held[i] {
+                for j in 0..P {
+                    if held[j].is_none() {
+                        right[j] -= m[j][i] * s;
+                    }
+                    reduced[i][j] = T::ZERO;
+                    reduced[j][i] = T::ZERO;
+                }
+            }
+        }
+        for i in 0..P {
+            if let Some(s) = held[i] {
+                reduced[i][i] = T::ONE;
+                right[i] = s;
+            }
+        }
+        step = crate::linear::solve_spd(&reduced, &right)?;
+    }
+    Some(step)
+}
+
+/// The step cut to the longest allowed one, and the point it leads to.
 #[inline(always)]
 fn shorten<T: Real, const P: usize>(
     x: &[T; P],
@@ -171,28 +233,23 @@ fn shorten<T: Real, const P: usize>(
 ) -> ([T; P], [T; P]) {
     let mut scale = T::ONE;
     for i in 0..P {
-        let s = step[i];
-        let room = if s < T::ZERO { x[i] - bounds[i].lower } else { bounds[i].upper - x[i] };
-        let allowed = (T::lit(0.995) * room).min(max_step[i]);
-        if s.abs() * scale > allowed {
-            scale = allowed / s.abs();
+        let s = step[i].abs();
+        if s * scale > max_step[i] {
+            scale = max_step[i] / s;
         }
     }
     let step = step.map(|s| s * scale);
     (core::array::from_fn(|i| bounds[i].clip(x[i] + step[i])), step)
 }
 
-/// −(gᵀs + ½ sᵀ(H + diag(|g|/v))s), with the Hessian that made the step where it is convex along it.
+/// −(gᵀs + ½ sᵀHs), with the Hessian that made the step where it is convex along it.
 #[inline(always)]
-fn predicted_decrease<T: Real, const P: usize>(here: &Evaluation<T, P>, step: &[T; P], distance: &[T; P]) -> T {
+fn predicted_decrease<T: Real, const P: usize>(here: &Evaluation<T, P>, step: &[T; P]) -> T {
     let mut slope = T::ZERO;
     let mut exact = T::ZERO;
     let mut approximate = T::ZERO;
     for i in 0..P {
         slope += here.gradient[i] * step[i];
-        let box_term = here.gradient[i].abs() / distance[i] * step[i].squared();
-        exact += box_term;
-        approximate += box_term;
         for j in 0..P {
             exact += here.hessian[i][j] * step[i] * step[j];
             approximate += here.gauss_newton[i][j] * step[i] * step[j];

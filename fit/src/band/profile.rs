@@ -127,7 +127,7 @@ impl<T: Real, const L: usize> Profile<'_, T, L> {
     #[inline(always)]
     pub fn box_of(bounds: &BandBounds<T>) -> [Interval<T>; 2] {
         [
-            Interval::new(f0_from_n(bounds.n.lower), f0_from_n(bounds.n.upper)),
+            Interval::new(f0_from_n(bounds.n.lower).ln(), f0_from_n(bounds.n.upper).ln()),
             Interval::new(bounds.sigma.lower.ln(), bounds.sigma.upper.ln()),
         ]
     }
@@ -190,7 +190,10 @@ impl<T: Real> Point<T> {
 impl<T: Real, const L: usize> Objective<T, 2> for Profile<'_, T, L> {
     #[inline(always)]
     fn evaluate(&mut self, x: &[T; 2]) -> Evaluation<T, 2> {
-        let [n, n1, n2] = n_from_f0(x[0]);
+        let f0 = x[0].exp();
+        let [n, slope, curvature] = n_from_f0(f0);
+        // n(ln F₀)
+        let (n1, n2) = (slope * f0, (curvature * f0 + slope) * f0);
         let sigma = x[1].exp();
         let point = self.at(self.bounds.n.clip(n), self.bounds.sigma.clip(sigma));
         // chain rule: n(F₀), σ(ln σ) with σ' = σ'' = σ

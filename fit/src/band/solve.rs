@@ -31,12 +31,12 @@ pub struct BandOptions<T> {
 }
 
 impl<T: Real> BandOptions<T> {
-    /// Table 3's bounds; 10⁻¹¹ of χ² in double precision, 10⁻³ in single (tighter only burns steps there); 60 steps; all valleys.
+    /// Table 3's bounds; 10⁻¹¹ of χ² in double precision, 10⁻⁴ in single (tighter only burns steps there); 200 steps (ordinary bands take 4, narrow valleys dozens); all valleys.
     pub fn table_3() -> Self {
         BandOptions {
             bounds: BandBounds::table_3(),
             tolerance: if T::EPSILON < T::lit(1e-10) { T::lit(1e-11) } else { T::lit(1e-4) },
-            max_iterations: 60,
+            max_iterations: 200,
             starts: MOST_VALLEYS,
             weights: Weights::Relative,
         }
@@ -149,9 +149,9 @@ impl<'a, T: Real, const L: usize> BandSolver<'a, T, L> {
             tolerance: self.options.tolerance,
             max_iterations: self.options.max_iterations,
             // F₀ may double or halve at most several times over its range; σ by a factor of 2
-            max_step: [T::lit(0.2), T::lit(0.7)],
+            max_step: [T::ONE, T::lit(0.7)],
         };
-        let x = [f0_from_n(bounds.n.clip(start.n)), bounds.sigma.clip(start.sigma).ln()];
+        let x = [f0_from_n(bounds.n.clip(start.n)).ln(), bounds.sigma.clip(start.sigma).ln()];
         let minimum = minimize(&mut profile, &boxed, &x, &options);
 
         let value = |at: AtBound, interval: Interval<T>, x: T| match at {
@@ -159,7 +159,7 @@ impl<'a, T: Real, const L: usize> BandSolver<'a, T, L> {
             AtBound::Upper => interval.upper,
             AtBound::Free => interval.clip(x),
         };
-        let n = value(minimum.at_bound[0], bounds.n, n_from_f0(minimum.x[0])[0]);
+        let n = value(minimum.at_bound[0], bounds.n, n_from_f0(minimum.x[0].exp())[0]);
         let sigma = value(minimum.at_bound[1], bounds.sigma, minimum.x[1].exp());
         // once more with k_L/π as reference: χ² to the last digit, and the normal matrix
         let mut point = profile.at(n, sigma);
