@@ -3,6 +3,7 @@
 mod brdf;
 mod completions;
 mod convert;
+mod demo;
 mod dhrf;
 mod fit;
 mod fresnel;
@@ -19,6 +20,7 @@ use leafbrdf::measurement::{ReadError, WriteError};
 pub use normalization::NormalizationName;
 
 pub const EXAMPLES: &str = "Examples:
+  leafbrdf demo
   leafbrdf fit laurel.csv --model bands -o laurel-fit
   leafbrdf brdf --n 1.56 --sigma 0.29 --theta-s 60 --theta-v 0:70:10 --phi-v 180
   leafbrdf convert laurel.csv laurel-long.csv.gz --layout long
@@ -31,6 +33,7 @@ pub enum Command {
     Dhrf(dhrf::Arguments),
     Fit(fit::Arguments),
     Convert(convert::Arguments),
+    Demo(demo::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -42,6 +45,7 @@ impl Command {
             Command::Dhrf(arguments) => dhrf::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),
             Command::Convert(arguments) => convert::run(&arguments),
+            Command::Demo(arguments) => demo::run(&arguments),
             Command::Completions(arguments) => completions::run(&arguments),
         }
     }

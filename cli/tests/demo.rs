@@ -1,0 +1,210 @@
+//! The demo: what it prints is true, and its files are those of the main job.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use std::sync::LazyLock;
+
+use leafbrdf::demo::{self, DHRF_SOURCES_DEG, DemoReport};
+use leafbrdf::fit::{Selected, Selection, fit_bands};
+use leafbrdf::measurement::{Quantity, ReadOptions, read_path};
+use leafbrdf::simulate::{Noise, presets};
+use leafbrdf_core::{Angle, Grade, Illumination, Surface};
+use leafbrdf_fit::{BandOptions, LeafBandsOptions, band::Weights};
+use tempfile::TempDir;
+
+/// One run that all tests look at.
+static RUN: LazyLock<(TempDir, DemoReport)> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let report = demo::run(folder.path()).unwrap();
+    (folder, report)
+});
+
+fn command(arguments: &[&str], within: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_leafbrdf")).args(arguments).current_dir(within).output().unwrap()
+}
+
+/// Every file below a folder, by its path from there.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    let mut folders = vec![folder.to_path_buf()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap().to_string_lossy().replace('\\', "/");
+                all.insert(name, fs::read(&path).unwrap());
+            }
+        }
+    }
+    all
+}
+
+/// One column of a CSV file.
+fn column(path: &Path, name: &str) -> Vec<f64> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let place = reader.headers().unwrap().iter().position(|header| header == name).unwrap();
+    reader.records().map(|record| record.unwrap().get(place).unwrap().parse().unwrap()).collect()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+#[test]
+fn every_parameter_of_every_leaf_is_recovered() {
+    let (_, report) = &*RUN;
+    assert_eq!(report.leaves.len(), 3);
+    for (leaf, preset) in report.leaves.iter().zip(presets()) {
+        assert_eq!((leaf.name, leaf.bands, leaf.values), (preset.name, 400, 260));
+        for (recovery, truth) in leaf.recovery.iter().zip([None, Some(preset.n), Some(preset.sigma)]) {
+            assert!(truth.is_none_or(|truth| (recovery.truth - truth).abs() < 1e-12), "{}", leaf.name);
+            assert!((recovery.mean - recovery.truth).abs() < 3.0 * recovery.mean_se, "{}: {recovery:?}", leaf.name);
+            // equal weights on values whose noise differs: at most half as much again as the standard errors say
+            let ratio = recovery.rms_error / recovery.rms_se;
+            assert!(ratio > 0.9 && ratio < 1.5, "{}: {recovery:?}", leaf.name);
+        }
+    }
+}
+
+#[test]
+fn the_fit_leaves_as_much_as_the_noise_put_in() {
+    for leaf in &RUN.1.leaves {
+        // three of 260 values are fitted; 104 000 values: 0.2 % is one standard error of the ratio, n and σ of the noisier
+        // peaks take a little more than their share
+        let expected = leaf.noise * (257.0_f64 / 260.0).sqrt();
+        assert!((leaf.rmse / expected - 1.0).abs() < 0.02, "{}: {} {expected}", leaf.name, leaf.rmse);
+    }
+}
+
+#[test]
+fn standard_errors_cover_the_truth_about_as_often_as_they_should() {
+    let covered = RUN.1.covered();
+    assert!(covered > 0.60 && covered < 0.72, "{covered}");
+}
+
+#[test]
+fn with_known_standard_deviations_68_percent_of_the_standard_errors_cover_the_truth() {
+    let (folder, _) = &*RUN;
+    let noise = Noise::new(Noise::RELATIVE, Noise::ABSOLUTE, 0);
+    for preset in presets() {
+        let path = folder.path().join(format!("measurements/{}.csv", preset.name));
+        let [mut measured] = <[_; 1]>::try_from(read_path(&path, &ReadOptions::default()).unwrap()).unwrap();
+        measured.sd = Some(measured.values.iter().map(|value| noise.sd(*value)).collect());
+        let options = LeafBandsOptions {
+            band: BandOptions { weights: Weights::Absolute, ..BandOptions::table_3() },
+            ..LeafBandsOptions::default()
+        };
+        let selected = Selected::new(&measured, &Selection::default()).unwrap();
+        let outcome = fit_bands(selected, &options, &|_| ()).unwrap();
+        let k_l = column(&folder.path().join(format!("truth/{}.csv", preset.name)), "k_l");
+        for p in 0..3 {
+            let inside = outcome.bands.iter().zip(&k_l).filter(|(band, k_l)| {
+                let band = band.as_ref().unwrap();
+                let truth = [**k_l, preset.n, preset.sigma][p];
+                (band.parameters[p] - truth).abs() <= band.standard_errors[p].unwrap()
+            });
+            let share = inside.count() as f64 / 400.0;
+            // binomial: 68.3 % ± 2.3 % of 400 bands; four of them
+            assert!((share - 0.683).abs() < 4.0 * 0.0233, "{} {p}: {share}", preset.name);
+        }
+    }
+}
+
+#[test]
+fn no_true_lambert_coefficient_lies_below_the_fits_lower_bound() {
+    for leaf in &RUN.1.leaves {
+        assert!(leaf.k_lambert_range[0] > 0.01 && leaf.k_lambert_range[1] < 0.99, "{}", leaf.name);
+    }
+}
+
+#[test]
+fn specular_dhrf_is_that_of_table_4_and_grows_towards_grazing() {
+    for (leaf, preset) in RUN.1.leaves.iter().zip(presets()) {
+        let truth = DHRF_SOURCES_DEG.map(|theta_s| {
+            let source = Illumination::new(Angle::from_degrees(theta_s)).unwrap();
+            Surface::new(preset.n, preset.sigma).unwrap().dhrf(&source, Grade::E10)
+        });
+        for (found, truth) in leaf.dhrf_specular.iter().zip(truth) {
+            // n of a band is off by up to 1 % (hazel), of the mean by 0.1 %
+            assert!((found / truth - 1.0).abs() < 0.01, "{}: {found} {truth}", leaf.name);
+        }
+        // the paper's words (§4.4): almost the same at 8°, 21° and 41°, double at 60°
+        let [at_8, at_21, at_41, at_60] = leaf.dhrf_specular;
+        assert!(at_21 / at_8 < 1.03 && at_41 / at_8 < 1.35, "{}", leaf.name);
+        assert!(at_60 / at_8 > 1.4 && at_60 / at_8 < 4.0, "{}", leaf.name);
+    }
+}
+
+#[test]
+fn the_numbers_printed_are_those_of_the_files() {
+    let (folder, report) = &*RUN;
+    let text = report.to_string();
+    for leaf in &report.leaves {
+        let bands = folder.path().join(format!("fit/{}/bands.csv", leaf.name));
+        for (name, recovery, digits) in [("n", leaf.recovery[1], 4), ("sigma", leaf.recovery[2], 5)] {
+            let fitted = mean(&column(&bands, name));
+            assert!((fitted - recovery.mean).abs() < 1e-12, "{}", leaf.name);
+            assert!(text.contains(&format!("{fitted:.digits$} ± ")), "{name} {fitted} in {text}");
+        }
+        assert!(text.contains(&format!("{:.2e}", leaf.rmse)));
+        let specular = column(&folder.path().join(format!("fit/{}/dhrf.csv", leaf.name)), "dhrf_specular");
+        let at_60: Vec<f64> = specular.iter().skip(3).step_by(4).copied().collect();
+        assert!((mean(&at_60) / leaf.dhrf_specular[3] - 1.0).abs() < 1e-6);
+    }
+    assert!(text.contains(&format!("{:.1} %", 100.0 * report.covered())));
+    assert!(text.contains("bousquet2005"), "every output names the convention");
+}
+
+#[test]
+fn measurement_files_read_back_with_all_their_values() {
+    let (folder, _) = &*RUN;
+    for preset in presets() {
+        let path = folder.path().join(format!("measurements/{}.csv", preset.name));
+        let leaves = read_path(&path, &ReadOptions::default()).unwrap();
+        let [leaf] = leaves.as_slice() else { panic!("one leaf a file") };
+        assert_eq!((leaf.name.as_str(), leaf.quantity), (preset.name, Quantity::Brdf));
+        assert_eq!((leaf.wavelengths_nm.len(), leaf.directions.len(), leaf.counts().missing), (400, 392, 0));
+        assert_eq!(leaf.azimuth_warning(), None, "the peak lies on the forward side");
+        assert!(leaf.metadata.get("source").unwrap().contains("simulated"));
+    }
+}
+
+#[test]
+fn a_second_run_gives_the_same_bytes_and_the_fit_command_as_well() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = command(&["demo"], folder.path());
+    assert!(first.status.success(), "{}", String::from_utf8_lossy(&first.stderr));
+    let place = folder.path().join("leafbrdf-demo");
+    let written = files(&place);
+    assert_eq!(written.len(), 3 + 3 + 3 * 3 + 1, "{:?}", written.keys());
+
+    let second = command(&["demo", "-o", "leafbrdf-demo"], folder.path());
+    assert_eq!(first.stdout, second.stdout);
+    assert_eq!(String::from_utf8(first.stdout).unwrap(), RUN.1.to_string());
+    assert!(files(&place) == written);
+
+    fs::remove_dir_all(place.join("fit")).unwrap();
+    let by_hand = ["laurel", "beech", "hazel"].map(|name| format!("leafbrdf-demo/measurements/{name}.csv"));
+    let mut arguments = vec!["fit", "--model", "bands", "-o", "leafbrdf-demo/fit"];
+    arguments.extend(by_hand.iter().map(String::as_str));
+    let fit = command(&arguments, folder.path());
+    assert!(fit.status.success(), "{}", String::from_utf8_lossy(&fit.stderr));
+    for (name, bytes) in files(&place) {
+        assert!(written.get(&name) == Some(&bytes), "{name} differs");
+    }
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("taken"), "a file").unwrap();
+    let output = command(&["demo", "-o", "taken"], folder.path());
+    assert_eq!(output.status.code(), Some(1));
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("taken/measurements: cannot be written"), "{message}");
+    assert!(output.stdout.is_empty());
+}
