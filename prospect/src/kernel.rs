@@ -15,8 +15,9 @@ use crate::plate::{Interface, Plate};
 use crate::stack::{Decay, Optics, Pair, Reciprocals, SlopeSeries, Slopes, optics, slopes};
 use crate::table::View;
 
-/// Bands worked on together: a multiple of every register width, small enough for the first-level cache.
-pub(crate) const BLOCK: usize = 64;
+/// Bands worked on together: several of the widest registers, within the first-level cache. Without `std` there is no SIMD to
+/// feed, and the stack of a device is what counts. Results do not depend on it.
+pub(crate) const BLOCK: usize = if cfg!(feature = "std") { 64 } else { 8 };
 
 /// One block of numbers, one a band.
 pub(crate) type Block<L> = [L; BLOCK];

@@ -220,7 +220,7 @@ impl<T: Lanes> Prospect<'_, T> {
     }
 
     fn fits(&self, slice: &'static str, found: usize, rows: usize) -> Result<(), Error> {
-        let expected = rows * self.view.len();
+        let expected = rows.saturating_mul(self.view.len());
         if found == expected { Ok(()) } else { Err(Error::Length { slice, expected, found }) }
     }
 }
@@ -276,7 +276,8 @@ impl<T: Lanes> Sink<T> for Rows<'_, '_, T> {
             *dr *= per_plate;
             *dt *= per_plate;
         }
-        let bands = self.view.len();
+        // never 0 here; without saying so, `chunks_exact_mut` brings a panic
+        let bands = self.view.len().max(1);
         let d_reflectance = self.room.d_reflectance.chunks_exact_mut(bands);
         let d_transmittance = self.room.d_transmittance.chunks_exact_mut(bands);
         for ((&parameter, to_r), to_t) in self.parameters.iter().zip(d_reflectance).zip(d_transmittance) {

@@ -291,7 +291,7 @@ impl<'a, T: Real> View<'a, T> {
         columns: &'a [T],
     ) -> Result<View<'a, T>, Error> {
         let bands = wavelengths.len();
-        let expected = columns_of(version) * bands;
+        let expected = columns_of(version).saturating_mul(bands);
         if bands == 0 || columns.len() != expected {
             return Err(Error::Length { slice: "columns", expected: expected.max(1), found: columns.len() });
         }
@@ -417,7 +417,7 @@ impl<'a, T: Real> View<'a, T> {
     /// ```
     pub fn at_wavelengths<'b>(&self, wavelengths: &'b [T], columns: &'b mut [T]) -> Result<View<'b, T>, Error> {
         let bands = wavelengths.len();
-        let expected = columns_of(self.version) * bands;
+        let expected = columns_of(self.version).saturating_mul(bands);
         if bands == 0 || columns.len() != expected {
             return Err(Error::Length { slice: "columns", expected: expected.max(1), found: columns.len() });
         }

@@ -124,7 +124,8 @@ fn interface_without_a_step_in_index_lets_everything_through() {
     }
 }
 
-/// The tables hold what the function returns, and the file's index. One rounding: the quotient's square root.
+/// The tables hold what the function returns, and the file's index. They are computed with `libm`, whose exp may differ from
+/// the standard library's in the last place; the index comes back through a square root.
 #[test]
 fn tables_hold_the_interface_of_their_own_index() {
     for (version, file) in [
@@ -138,7 +139,8 @@ fn tables_hold_the_interface_of_their_own_index() {
             let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
             assert_eq!(view.wavelengths().get(band), Some(cells[0]));
             let faces = view.interface(band).expect("a band of the table");
-            assert_eq!((faces.t_alpha, faces.t_90), (t_av(40.0, cells[1]), t_av(90.0, cells[1])));
+            assert!((faces.t_alpha - t_av(40.0, cells[1])).abs() <= 4.0 * f64::EPSILON);
+            assert!((faces.t_90 - t_av(90.0, cells[1])).abs() <= 4.0 * f64::EPSILON);
             let n = view.refractive_index(band).expect("a band of the table");
             assert!((n - cells[1]).abs() < 1e-15 * n * 2.0);
             for (column, k) in view.coefficients().zip(&cells[2..]) {
