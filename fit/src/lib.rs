@@ -9,6 +9,7 @@ extern crate std;
 pub mod band;
 mod bounds;
 mod error;
+pub mod hemispherical;
 #[cfg(feature = "std")]
 mod leaf_bands;
 mod linear;

@@ -1,0 +1,202 @@
+//! What inversions of PROSPECT recover: counts, errors, time. `cargo run --release -p leafbrdf-fit --example hemispherical [LEAVES]`
+//!
+//! Random leaves (uniform: N 1–3, C_ab 2–90, C_car 1–25, C_ant 0–15 µg cm⁻², C_brown 0–1, C_w 0.002–0.05 cm, C_m 0.001–0.02, C_prot
+//! 0.0002–0.003, C_cbc 0.0008–0.018 g cm⁻²), 400–2500 nm at 1 nm, always the same ones.
+
+use std::time::Instant;
+
+use leafbrdf_fit::hemispherical::{
+    HemisphericalProblem, LeafFit, LeafFitOptions, Measured, Spectra, default_free, fit_leaf, n_prior,
+};
+use leafbrdf_fit::{Identifiability, Interval};
+use leafbrdf_prospect::{LeafParams, Parameter, Prospect, Version, table};
+
+/// SplitMix64: a fixed sequence of numbers.
+struct Random(u64);
+
+impl Random {
+    fn uniform(&mut self, from: f64, to: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        from + (to - from) * (z >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn normal(&mut self) -> f64 {
+        let (u, v) = (1.0 - self.uniform(0.0, 1.0), self.uniform(0.0, 1.0));
+        (-2.0 * u.ln()).sqrt() * (2.0 * std::f64::consts::PI * v).cos()
+    }
+
+    fn leaf(&mut self, version: Version) -> LeafParams<f64> {
+        let mut leaf = LeafParams::with_n_struct(self.uniform(1.0, 3.0));
+        for parameter in default_free(version).into_iter().skip(1) {
+            let (from, to) = match parameter {
+                Parameter::NStruct => (1.0, 3.0),
+                Parameter::Cab => (2.0, 90.0),
+                Parameter::Car => (1.0, 25.0),
+                Parameter::Cant => (0.0, 15.0),
+                Parameter::Cbrown => (0.0, 1.0),
+                Parameter::Cw => (0.002, 0.05),
+                Parameter::Cm => (0.001, 0.02),
+                Parameter::Prot => (0.0002, 0.003),
+                Parameter::Cbc => (0.0008, 0.018),
+            };
+            leaf.set(parameter, self.uniform(from, to));
+        }
+        leaf
+    }
+}
+
+struct Simulated {
+    leaf: LeafParams<f64>,
+    reflectance: Vec<f64>,
+    transmittance: Vec<f64>,
+}
+
+fn simulate(version: Version, leaves: usize, noise: f64) -> Vec<Simulated> {
+    let model = Prospect::new(table::full(version));
+    let mut random = Random(2005);
+    let mut errors = Random(1990);
+    (0..leaves)
+        .map(|_| {
+            let leaf = random.leaf(version);
+            let (mut reflectance, mut transmittance) = (vec![0.0; table::BANDS], vec![0.0; table::BANDS]);
+            model.spectrum(&leaf, &mut reflectance, &mut transmittance).expect("a possible leaf");
+            for value in reflectance.iter_mut().chain(&mut transmittance) {
+                *value += noise * errors.normal();
+            }
+            Simulated { leaf, reflectance, transmittance }
+        })
+        .collect()
+}
+
+fn invert(version: Version, one: &Simulated, use_r: bool, use_t: bool, options: &LeafFitOptions) -> LeafFit {
+    let measured = |values| Some(Measured { values, weights: None });
+    let problem = HemisphericalProblem {
+        model: Prospect::new(table::full(version)),
+        spectra: Spectra {
+            reflectance: measured(one.reflectance.as_slice()).filter(|_| use_r),
+            transmittance: measured(one.transmittance.as_slice()).filter(|_| use_t),
+        },
+        held: LeafParams::with_n_struct(1.5),
+    };
+    fit_leaf(&problem, options).expect("a problem that can be set up")
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+fn main() {
+    let leaves: usize = std::env::args().nth(1).and_then(|count| count.parse().ok()).unwrap_or(1000);
+
+    println!("## noise-free, every parameter free, {leaves} leaves");
+    println!("version data  recovered_1e-6 worst  agreeing_starts iterations_a_start ms_a_spectrum");
+    for version in [Version::P5B, Version::D, Version::Pro] {
+        let simulated = simulate(version, leaves, 0.0);
+        let options = LeafFitOptions::new(&default_free(version));
+        for (name, use_r, use_t) in [("R+T", true, true), ("R", true, false), ("T", false, true)] {
+            let clock = Instant::now();
+            let fits: Vec<LeafFit> = simulated.iter().map(|one| invert(version, one, use_r, use_t, &options)).collect();
+            let time = clock.elapsed().as_secs_f64() * 1e3 / leaves as f64;
+            // error in units of the parameter's interval
+            let error = |one: &Simulated, fit: &LeafFit| {
+                let scaled = options.free.iter().map(|free| {
+                    let (truth, found) = (one.leaf.get(free.parameter), fit.leaf.get(free.parameter));
+                    (truth - found).abs() / (free.bounds.upper - free.bounds.lower)
+                });
+                scaled.fold(0.0, f64::max)
+            };
+            let errors: Vec<f64> = simulated.iter().zip(&fits).map(|(one, fit)| error(one, fit)).collect();
+            let starts: u32 = fits.iter().map(|fit| fit.starts).sum();
+            println!(
+                "{:7} {name:4}  {:6}/{leaves}  {:.1e}  {:.3}  {:.1}  {time:.2}",
+                version.name(),
+                errors.iter().filter(|error| **error < 1e-6).count(),
+                errors.iter().copied().fold(0.0, f64::max),
+                f64::from(fits.iter().map(|fit| fit.agreeing).sum::<u32>()) / f64::from(starts),
+                f64::from(fits.iter().map(|fit| fit.iterations).sum::<u32>()) / f64::from(starts),
+            );
+            let unknown: Vec<String> = options
+                .free
+                .iter()
+                .enumerate()
+                .map(|(i, free)| {
+                    let count =
+                        fits.iter().filter(|f| f.estimates[i].identifiability == Identifiability::NotIdentifiable);
+                    format!("{} {}", free.parameter.name(), count.count())
+                })
+                .collect();
+            println!("        not identifiable: {}", unknown.join(", "));
+        }
+    }
+
+    let noise = 0.005;
+    println!(
+        "## white noise of {noise}, every parameter free: median standard error, median |error|, share within 1 and 2 standard errors"
+    );
+    for version in [Version::P5B, Version::D, Version::Pro] {
+        let simulated = simulate(version, leaves, noise);
+        let options = LeafFitOptions::new(&default_free(version));
+        for (name, use_r, use_t) in [("R+T", true, true), ("R", true, false)] {
+            let fits: Vec<LeafFit> = simulated.iter().map(|one| invert(version, one, use_r, use_t, &options)).collect();
+            for (i, free) in options.free.iter().enumerate() {
+                let pairs: Vec<(f64, f64)> = simulated
+                    .iter()
+                    .zip(&fits)
+                    .filter_map(|(one, fit)| {
+                        let error = (fit.estimates[i].value - one.leaf.get(free.parameter)).abs();
+                        Some((error, fit.estimates[i].standard_error?))
+                    })
+                    .collect();
+                let within = |k: f64| {
+                    pairs.iter().filter(|(error, se)| *error <= k * se).count() as f64 / pairs.len().max(1) as f64
+                };
+                let vifs = median(
+                    fits.iter()
+                        .flat_map(|fit| fit.estimates[i].correlations.iter().enumerate())
+                        .filter(|(j, _)| *j != i)
+                        .filter_map(|(_, c)| c.map(f64::abs))
+                        .collect(),
+                );
+                println!(
+                    "{:4} {name:4} {:9} n {:4}  se {:.3e}  error {:.3e}  {:.3}  {:.3}  median |corr| {vifs:.2}",
+                    version.name(),
+                    free.parameter.name(),
+                    pairs.len(),
+                    median(pairs.iter().map(|(_, se)| *se).collect()),
+                    median(pairs.iter().map(|(error, _)| *error).collect()),
+                    within(1.0),
+                    within(2.0),
+                );
+            }
+            println!(
+                "     residual correlation of neighbours: n_effective/n_obs {:.3}",
+                median(fits.iter().map(|f| f.n_effective / f.n_obs as f64).collect())
+            );
+        }
+    }
+
+    println!("## N from reflectance alone (n_prior), noise-free and with {noise}");
+    for noise in [0.0, noise] {
+        let simulated = simulate(Version::D, leaves, noise);
+        let model = Prospect::new(table::full(Version::D));
+        let errors: Vec<(f64, f64)> = simulated
+            .iter()
+            .map(|one| {
+                let prior = n_prior(&model, &one.reflectance, Interval::new(1.0, 5.0)).expect("a plateau");
+                (prior.n_struct - one.leaf.n_struct, prior.standard_deviation)
+            })
+            .collect();
+        let rms = (errors.iter().map(|(e, _)| e * e).sum::<f64>() / leaves as f64).sqrt();
+        let mean = errors.iter().map(|(e, _)| e).sum::<f64>() / leaves as f64;
+        println!(
+            "noise {noise}: bias {mean:.3}, rms {rms:.3}, median |error| {:.3}, within 1 sd {:.3}",
+            median(errors.iter().map(|(e, _)| e.abs()).collect()),
+            errors.iter().filter(|(e, sd)| e.abs() <= *sd).count() as f64 / leaves as f64
+        );
+    }
+}
