@@ -27,6 +27,12 @@ impl Version {
         }
     }
 
+    /// The version called `5B`, `D` or `PRO`.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Version> {
+        [Version::P5B, Version::D, Version::Pro].into_iter().find(|version| version.name() == name)
+    }
+
     /// `5B`, `D` or `PRO`.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -74,6 +80,12 @@ impl Parameter {
         Parameter::Prot,
         Parameter::Cbc,
     ];
+
+    /// The parameter of this name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Parameter> {
+        Parameter::ALL.into_iter().find(|parameter| parameter.name() == name)
+    }
 
     /// Name, as the field of [`LeafParams`].
     #[must_use]

@@ -117,3 +117,14 @@ fn unusual_values_are_named_but_accepted() {
     assert_eq!(leaf.check(Version::D), Ok(()));
     assert_eq!(ordinary().unusual(Version::D).count(), 0);
 }
+
+#[test]
+fn names_lead_back_to_what_they_name() {
+    for parameter in Parameter::ALL {
+        assert_eq!(Parameter::from_name(parameter.name()), Some(parameter));
+    }
+    for version in [Version::P5B, Version::D, Version::Pro] {
+        assert_eq!(Version::from_name(version.name()), Some(version));
+    }
+    assert_eq!((Version::from_name("5b"), Parameter::from_name("Cab")), (None, None));
+}
