@@ -12,6 +12,8 @@ use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 #[cfg(all(feature = "libm", not(feature = "std")))]
 mod libm;
+#[cfg(feature = "micromath")]
+pub mod micromath;
 #[cfg(any(feature = "std", feature = "libm"))]
 mod portable;
 #[cfg(feature = "std")]
