@@ -255,6 +255,83 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(cases(20_000))]
+
+    // The laws above that are stated in f64, once more in f32; bounds are those of f32 rounding (6e-8) times the number of
+    // operations and, in the tail, the exponent.
+    #[test]
+    fn single_precision_keeps_the_limits_of_fresnel(n in 1.01..100.0_f32, kappa in 0.0..100.0_f32) {
+        let real = Dielectric::new(n).unwrap();
+        prop_assert!((real.fresnel(0.0) - 1.0).abs() <= 8.0 * f32::EPSILON);
+        prop_assert!((Absorbing::new(n, kappa).unwrap().fresnel(0.0) - 1.0).abs() <= 16.0 * f32::EPSILON);
+        let normal = ((f64::from(n) - 1.0) / (f64::from(n) + 1.0)).powi(2);
+        prop_assert!((f64::from(real.fresnel(1.0)) / normal - 1.0).abs() <= 1e-6);
+        // r_p changes sign at Brewster's angle: what is left of it is the rounding of the angle
+        let brewster = 1.0 / (1.0 + n * n).sqrt();
+        prop_assert!(real.polarized(brewster).r_p <= 1e-11, "{:?}", real.polarized(brewster));
+    }
+
+    #[test]
+    fn single_precision_density_falls_with_tilt_exactly_while_sigma_is_at_most_one_over_root_two(
+        sigma in 0.01..2.0_f32, tan2 in 0.0..50.0_f32,
+    ) {
+        if sigma <= core::f32::consts::FRAC_1_SQRT_2 {
+            prop_assume!(facet::beckmann(tan2, sigma) > 1e-30);
+            // a step that the fall outweighs the rounding of: D'/D ≥ 2 (1/(2σ²) − 1/(1 + t)) ≥ 2t/(1 + t) at σ = 1/√2
+            let step = 0.1 * (1.0 + tan2);
+            prop_assert!(facet::beckmann(tan2 + step, sigma) <= facet::beckmann(tan2, sigma));
+        } else if sigma > 0.72 {
+            let top = 2.0 * sigma * sigma - 1.0;
+            prop_assert!(facet::beckmann(top, sigma) > facet::beckmann(0.0, sigma));
+        }
+    }
+
+    #[test]
+    fn single_precision_gradient_is_the_double_precision_one(
+        k in 0.0..1.0_f32, n in 1.05..5.0_f32, sigma in 0.05..1.5_f32, s in 0.0..89.0_f32, v in 0.0..89.0_f32, phi in 0.0..360.0_f32,
+    ) {
+        let single = Leaf::new(k, Surface::new(n, sigma).unwrap()).unwrap();
+        let double = Leaf::new(f64::from(k), Surface::new(f64::from(n), f64::from(sigma)).unwrap()).unwrap();
+        let (s, v, phi) = (f64::from(s), f64::from(v), f64::from(phi));
+        let exact = double.brdf_with_gradient(&geometry(s, v, phi));
+        let gradient = single.brdf_with_gradient(&geometry(s, v, phi));
+        let exponent = geometry::<f64>(s, v, phi).tan2_alpha() / f64::from(sigma).powi(2);
+        prop_assume!(exponent < 14.0);
+        let specular = exact.value - f64::from(k) / core::f64::consts::PI;
+        // 1e-5 of the terms' size: (1 + exponent) F D/σ for σ, F D/(n − 1) for n, where differences cancel
+        let close = |single: f32, double: f64, size: f64| (f64::from(single) - double).abs() <= 1e-5 * size + 1e-7;
+        prop_assert!(close(gradient.value, exact.value, exact.value));
+        prop_assert!(close(gradient.d_n, exact.d_n, specular / f64::from(n - 1.0)), "{} {}", gradient.d_n, exact.d_n);
+        let size = specular * (1.0 + exponent) / f64::from(sigma);
+        prop_assert!(close(gradient.d_sigma, exact.d_sigma, size), "{} {}", gradient.d_sigma, exact.d_sigma);
+    }
+}
+
+#[test]
+fn single_precision_facet_areas_project_to_the_leaf_area() {
+    for sigma in [0.01_f32, 0.078, 0.29, 0.46, 1.0, 2.0] {
+        let steps = 1_000_u16;
+        let h = 40.0 * sigma * sigma / f32::from(steps);
+        // the sum in f64: what is tested is D, not 1,000 additions
+        let sum: f64 = (0..=steps)
+            .map(|i| {
+                let t = h * f32::from(i);
+                let simpson = if i == 0 || i == steps {
+                    1.0
+                } else if i % 2 == 1 {
+                    4.0
+                } else {
+                    2.0
+                };
+                simpson * f64::from(core::f32::consts::PI * facet::beckmann(t, sigma) / (1.0 + t).powi(2))
+            })
+            .sum();
+        // Simpson with h = 0.04 in t/σ²: 6e-7; f32: a few 1e-7
+        assert!((sum * f64::from(h) / 3.0 - 1.0).abs() < 2e-6, "{sigma}: {}", sum * f64::from(h) / 3.0);
+    }
+}
+
 #[test]
 fn the_horizon_itself_is_an_error() {
     for horizon in [90.0_f64, 90.0 + 1e-12, 180.0] {
