@@ -253,13 +253,14 @@ impl<T: Real> LeafParams<T> {
     /// ```
     pub fn check(&self, version: Version) -> Result<(), Error> {
         for parameter in Parameter::ALL {
-            let value = self.get(parameter).to_f64();
+            let value = self.get(parameter);
             let (lowest, highest) = parameter.limits();
-            if !(value >= lowest && value <= highest) {
-                return Err(Error::Outside { parameter, value });
+            // compared as `T`, so that 0.2 is the limit in single precision too
+            if !(value >= T::lit(lowest) && value <= T::lit(highest)) {
+                return Err(Error::Outside { parameter, value: value.to_f64() });
             }
             let known = parameter == Parameter::NStruct || version.constituents().contains(&parameter);
-            if !known && value != 0.0 {
+            if !known && value != T::ZERO {
                 return Err(Error::NotInVersion { parameter, version });
             }
         }
@@ -271,10 +272,10 @@ impl<T: Real> LeafParams<T> {
     /// A constituent of 0 is absent and not reported.
     pub fn unusual(&self, version: Version) -> impl Iterator<Item = Parameter> + '_ {
         Parameter::ALL.into_iter().filter(move |&parameter| {
-            let value = self.get(parameter).to_f64();
+            let value = self.get(parameter);
             let (lowest, highest) = parameter.typical();
             let known = parameter == Parameter::NStruct || version.constituents().contains(&parameter);
-            known && value != 0.0 && !(value >= lowest && value <= highest)
+            known && value != T::ZERO && !(value >= T::lit(lowest) && value <= T::lit(highest))
         })
     }
 }

@@ -45,6 +45,9 @@ fn limits_hold_for_every_parameter() {
             let mut leaf = LeafParams::with_n_struct(1.5);
             leaf.set(parameter, value);
             assert_eq!(leaf.check(Version::Pro), Ok(()), "{parameter:?} = {value}");
+            let mut single = LeafParams::with_n_struct(1.5_f32);
+            single.set(parameter, value as f32);
+            assert_eq!(single.check(Version::Pro), Ok(()), "{parameter:?} = {value}, f32");
         }
         for value in [lowest - 1e-9, highest * 1.000001, f64::NAN, f64::INFINITY] {
             let mut leaf = LeafParams::with_n_struct(1.5);
