@@ -11,6 +11,8 @@ mod inputs;
 mod list;
 mod model;
 mod normalization;
+mod prospect;
+mod version;
 
 use std::io;
 
@@ -31,6 +33,7 @@ pub enum Command {
     Brdf(brdf::Arguments),
     Fresnel(fresnel::Arguments),
     Dhrf(dhrf::Arguments),
+    Prospect(Box<prospect::Arguments>),
     Fit(fit::Arguments),
     Convert(convert::Arguments),
     Demo(demo::Arguments),
@@ -43,6 +46,7 @@ impl Command {
             Command::Brdf(arguments) => brdf::run(&arguments),
             Command::Fresnel(arguments) => fresnel::run(&arguments),
             Command::Dhrf(arguments) => dhrf::run(&arguments),
+            Command::Prospect(arguments) => prospect::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),
             Command::Convert(arguments) => convert::run(&arguments),
             Command::Demo(arguments) => demo::run(&arguments),

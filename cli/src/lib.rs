@@ -6,3 +6,9 @@ pub mod measurement;
 pub mod output;
 pub mod points;
 pub mod simulate;
+pub mod spectra;
+
+/// The examples of the repository's README, as tests; the file is not part of the package.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct RepositoryReadme;

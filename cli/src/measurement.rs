@@ -16,10 +16,10 @@ mod azimuth;
 pub(crate) mod cell;
 mod check;
 mod error;
-mod header;
+pub(crate) mod header;
 pub(crate) mod input;
 mod long;
-mod read;
+pub(crate) mod read;
 mod wide;
 mod write;
 

@@ -103,7 +103,7 @@ pub(super) fn read(source: Source<'_>) -> Result<Header, ReadError> {
 /// `key: value`, or an empty key and the whole remark.
 ///
 /// A key is a word or a few; the colon of `https://…` makes none.
-pub(super) fn split(remark: &str) -> (&str, &str) {
+pub(crate) fn split(remark: &str) -> (&str, &str) {
     match remark.split_once(':') {
         Some((key, value)) if is_key(key.trim_end()) && !value.starts_with("//") => (key.trim_end(), value.trim()),
         _ => ("", remark),

@@ -73,7 +73,7 @@ impl Context<'_> {
 }
 
 /// The file's name without folder and without the endings of data files.
-fn stem(path: &Path) -> String {
+pub(crate) fn stem(path: &Path) -> String {
     if path == Path::new("-") {
         return "stdin".to_string();
     }
