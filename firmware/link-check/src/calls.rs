@@ -3,9 +3,12 @@
 use core::hint::black_box;
 
 use leafbrdf_core::{
-    Absorbing, Angle, Dielectric, DirectionCosines, DomainError, Geometry, Index, Leaf, Normalization, Portable, Real,
-    Surface,
+    Absorbing, Angle, Dielectric, DirectionCosines, DirectionTerms, DomainError, Geometry, Grade, Illumination, Index,
+    Leaf, Normalization, Portable, Real, Surface,
 };
+use leafbrdf_fit::band::scan::{GridSize, Scan, ScanTable};
+use leafbrdf_fit::{Band, BandOptions, BandSolver, Directions};
+use leafbrdf_prospect::{LeafParams, Prospect, Version, table};
 
 /// Takes a result: its name and the bits of its value as an `f64` (exact for `f32` results).
 pub type Print<'a> = dyn FnMut(&str, u64) + 'a;
@@ -14,16 +17,21 @@ pub type Print<'a> = dyn FnMut(&str, u64) + 'a;
 pub fn single(print: &mut Print<'_>) {
     all::<f32>(print);
     all::<Portable<f32>>(print);
+    inversion::<f32>(print);
 }
 
 /// Everything in double precision, in software on this core.
 pub fn double(print: &mut Print<'_>) {
     all::<f64>(print);
     all::<Portable<f64>>(print);
+    inversion::<f64>(print);
+    if prospect(print).is_err() {
+        print("error", 1);
+    }
 }
 
 fn all<T: Real>(print: &mut Print<'_>) {
-    if let Err(error) = surface::<T>(print) {
+    if let Err(error) = surface::<T>(print).and_then(|()| hemisphere::<T>(print)) {
         print("error", 0);
         print(error.parameter, 0);
         print(error.expected, 0);
@@ -79,6 +87,79 @@ fn surface<T: Real>(print: &mut Print<'_>) -> Result<(), DomainError> {
     show("d_n", gradient.d_n);
     show("d_sigma", gradient.d_sigma);
     show("brf", Leaf::new(input(0.45), rough)?.brf(&table));
+    Ok(())
+}
+
+/// The hemispherical integral, value and gradient, in the cheapest grade and the best one.
+fn hemisphere<T: Real>(print: &mut Print<'_>) -> Result<(), DomainError> {
+    let mut show = |name: &str, value: T| print(name, value.to_f64().to_bits());
+    let illumination = Illumination::new(Angle::<T>::from_degrees(input(40.0)))?;
+    let dielectric = Dielectric::new(input::<T>(1.5))?;
+    let sigma = input(0.3);
+    show("dhrf_e4d", illumination.dhrf(dielectric, sigma, black_box(Grade::E4d)));
+    show("dhrf_e10", illumination.dhrf(dielectric, sigma, Grade::E10));
+    let gradient = illumination.dhrf_with_gradient(Absorbing::new(input::<T>(1.5), input(0.1))?, sigma, Grade::E4d);
+    show("dhrf", gradient.value);
+    show("dhrf_d_n", gradient.d_n);
+    show("dhrf_d_sigma", gradient.d_sigma);
+    print("evaluations", illumination.evaluations(sigma, Grade::E4d) as u64);
+    Ok(())
+}
+
+/// Directions of the small campaign below.
+const DIRECTIONS: usize = 12;
+
+/// A grid of starts that fits a small memory.
+const GRID: GridSize = GridSize { sigma: 6, n: 5 };
+
+/// k_L, n and σ from twelve values that beech of Table 4 would give, on one lane and with all memory on the stack.
+fn inversion<T: Real>(print: &mut Print<'_>) {
+    if campaign::<T>(print).is_none() {
+        print("error", 2);
+    }
+}
+
+fn campaign<T: Real>(print: &mut Print<'_>) -> Option<()> {
+    let beech = Leaf::new(input::<T>(0.45), Surface::new(input(1.56), input(0.29)).ok()?).ok()?;
+    let (mut cos_theta_a, mut tan2_alpha, mut lobe) =
+        ([T::ZERO; DIRECTIONS], [T::ZERO; DIRECTIONS], [T::ZERO; DIRECTIONS]);
+    let mut brdf = [T::ZERO; DIRECTIONS];
+    let places = cos_theta_a.iter_mut().zip(&mut tan2_alpha).zip(&mut lobe).zip(&mut brdf);
+    for (i, (((cos_theta_a, tan2_alpha), lobe), brdf)) in places.enumerate() {
+        let angle = |degrees: f64| Angle::<T>::from_degrees(input(degrees));
+        let theta_v = angle(6.0 * i as f64);
+        let geometry =
+            Geometry::from_angles(angle(45.0), theta_v, angle(if i % 3 == 0 { 90.0 } else { 180.0 })).ok()?;
+        let terms = DirectionTerms::new(&geometry, Normalization::Bousquet2005);
+        (*cos_theta_a, *tan2_alpha, *lobe) = (terms.cos_theta_a, terms.tan2_alpha, terms.weight);
+        *brdf = beech.brdf(&geometry);
+    }
+    let directions = Directions { cos_theta_a: &cos_theta_a, tan2_alpha: &tan2_alpha, weight: &lobe };
+    let options = BandOptions::table_3();
+    let mut workspace = [T::ZERO; GRID.workspace(DIRECTIONS)];
+    let mut cost = [T::ZERO; GRID.points()];
+    let table = ScanTable::new(GRID, options.bounds, directions, DIRECTIONS, &mut workspace)?;
+    let mut solver = BandSolver::<T, 1>::new(directions, options, Scan::new(table, &mut cost)).ok()?;
+    let fit = solver.fit(Band { brdf: &brdf, weight: &[T::ONE; DIRECTIONS] }, &[]).ok()??;
+    for (name, value) in ["fit_k_lambert", "fit_n", "fit_sigma"].into_iter().zip(fit.parameters) {
+        print(name, value.to_f64().to_bits());
+    }
+    print("fit_iterations", u64::from(fit.iterations));
+    Some(())
+}
+
+/// One band of PROSPECT-D, in the near infrared.
+fn prospect(print: &mut Print<'_>) -> Result<(), leafbrdf_prospect::Error> {
+    let leaf = LeafParams {
+        cab: input(40.0),
+        car: input(8.0),
+        cw: input(0.01),
+        cm: input(0.009),
+        ..LeafParams::with_n_struct(input(1.5))
+    };
+    let optics = Prospect::new(table::full(Version::D)).band(&leaf, black_box(400))?;
+    print("reflectance", optics.reflectance.to_bits());
+    print("transmittance", optics.transmittance.to_bits());
     Ok(())
 }
 

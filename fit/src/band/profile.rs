@@ -163,7 +163,12 @@ impl<T: Real, const L: usize> Profile<'_, T, L> {
             k_free,
             cost: cost.max(T::ZERO),
             gradient: [-T::TWO * r_s(0), -T::TWO * r_s(1)],
-            hessian: core::array::from_fn(|p| gauss_newton[p] - T::TWO * r_c(p)),
+            // spelled out: behind a closure the compiler may keep a bounds check, and with it a panic on a device
+            hessian: [
+                gauss_newton[0] - T::TWO * r_c(0),
+                gauss_newton[1] - T::TWO * r_c(1),
+                gauss_newton[2] - T::TWO * r_c(2),
+            ],
             gauss_newton,
             s: sums.s,
             s_s: sums.s_s,

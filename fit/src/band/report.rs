@@ -194,8 +194,15 @@ fn scaled_inverse<T: Real>(a: &[[T; 3]; 3]) -> Option<[[T; 3]; 3]> {
         }
         scale[i] = T::ONE / a[i][i].sqrt();
     }
+    // loops of known length: behind a closure the compiler may keep a bounds check, and with it a panic on a device
     let rescale = |m: &[[T; 3]; 3]| -> [[T; 3]; 3] {
-        core::array::from_fn(|i| core::array::from_fn(|j| m[i][j] * scale[i] * scale[j]))
+        let mut scaled = *m;
+        for i in 0..3 {
+            for j in 0..3 {
+                scaled[i][j] = m[i][j] * scale[i] * scale[j];
+            }
+        }
+        scaled
     };
     invert_spd(&rescale(a)).map(|inverse| rescale(&inverse))
 }

@@ -89,7 +89,8 @@ impl<'a, T: Real> ScanTable<'a, T> {
         sum2.fill(T::ZERO);
         lobe.fill(T::ZERO);
         let terms = directions.cos_theta_a.iter().zip(directions.tan2_alpha).zip(directions.weight);
-        for (row, ((cos_theta_a, tan2_alpha), weight)) in lobe.chunks_exact_mut(points).zip(terms) {
+        // `max(1)` changes nothing; it tells the compiler that there is no chunk of length 0, and so no panic
+        for (row, ((cos_theta_a, tan2_alpha), weight)) in lobe.chunks_exact_mut(points.max(1)).zip(terms) {
             // F of every n in the place of the first σ, then F · D of every σ, the first one last
             let (first, others) = row.split_at_mut_checked(size.n)?;
             for (k, value) in first.iter_mut().enumerate() {
@@ -189,7 +190,7 @@ impl<'a, T: Real> Scan<'a, T> {
             let mut y_s = [T::ZERO; BLOCK];
             let mut s = *sum;
             let mut s_s = *sum2;
-            let rows = || table.lobe.chunks_exact(points).filter_map(|row| row.as_chunks::<BLOCK>().0.get(b));
+            let rows = || table.lobe.chunks_exact(points.max(1)).filter_map(|row| row.as_chunks::<BLOCK>().0.get(b));
             if every_value_once {
                 for ((row, y), w) in rows().zip(band.brdf).zip(band.weight) {
                     let w_y = *w * (*y - mean);
