@@ -93,6 +93,14 @@ pub struct LeafReport {
     pub maximum: f64,
 }
 
+/// One band with a standard error for every parameter; the parameters are k_L, n, σ.
+struct FittedBand {
+    wavelength_nm: f64,
+    value: [f64; 3],
+    error: [f64; 3],
+    truth: [f64; 3],
+}
+
 impl LeafReport {
     pub(super) fn new(
         preset: &PresetLeaf,
@@ -101,8 +109,7 @@ impl LeafReport {
         outcome: &BandsOutcome,
         summary: &Summary,
     ) -> Self {
-        // wavelength, fitted, standard error, truth
-        let fitted: Vec<(f64, [f64; 3], [f64; 3], [f64; 3])> = leaf
+        let fitted: Vec<FittedBand> = leaf
             .wavelengths_nm
             .iter()
             .zip(&leaf.k_lambert)
@@ -110,17 +117,22 @@ impl LeafReport {
             .filter_map(|((nm, k_l), band)| {
                 let band = band.as_ref()?;
                 let [Some(k_l_se), Some(n_se), Some(sigma_se)] = band.standard_errors else { return None };
-                Some((*nm, band.parameters, [k_l_se, n_se, sigma_se], [*k_l, preset.n, preset.sigma]))
+                Some(FittedBand {
+                    wavelength_nm: *nm,
+                    value: band.parameters,
+                    error: [k_l_se, n_se, sigma_se],
+                    truth: [*k_l, preset.n, preset.sigma],
+                })
             })
             .collect();
         let recovery = [0, 1, 2].map(|p| {
-            let of: Vec<_> = fitted.iter().map(|(_, value, se, truth)| (value[p], se[p], truth[p])).collect();
+            let of: Vec<_> = fitted.iter().map(|band| (band.value[p], band.error[p], band.truth[p])).collect();
             Recovery::new(&of)
         });
         let invariance = [true, false].map(|vis| {
             [1, 2].map(|p| {
-                let inside = fitted.iter().filter(|(nm, ..)| (*nm <= VIS_END_NM) == vis);
-                relative_range(inside.map(|(_, value, ..)| value[p]))
+                let inside = fitted.iter().filter(|band| (band.wavelength_nm <= VIS_END_NM) == vis);
+                relative_range(inside.map(|band| band.value[p]))
             })
         });
         let noise = Noise::new(Noise::RELATIVE, Noise::ABSOLUTE, 0);
@@ -151,10 +163,11 @@ fn relative_range(values: impl Iterator<Item = f64> + Clone) -> f64 {
 }
 
 /// DHRF_spec at θ_s, mean over the bands' fitted n and σ; grade E6, below 10⁻⁶ relative.
-fn mean_dhrf(theta_s_deg: f64, leaf: &CoupledLeaf, fitted: &[(f64, [f64; 3], [f64; 3], [f64; 3])]) -> f64 {
+fn mean_dhrf(theta_s_deg: f64, leaf: &CoupledLeaf, fitted: &[FittedBand]) -> f64 {
     let Ok(source) = Illumination::new(Angle::from_degrees(theta_s_deg)) else { return f64::NAN };
-    let of_band = |(_, [_, n, sigma], ..): &(f64, [f64; 3], [f64; 3], [f64; 3])| {
-        let surface = Surface::new(*n, *sigma).ok()?;
+    let of_band = |band: &FittedBand| {
+        let [_, n, sigma] = band.value;
+        let surface = Surface::new(n, sigma).ok()?;
         Some(surface.with_normalization(leaf.normalization()).dhrf(&source, Grade::E6))
     };
     fitted.iter().filter_map(of_band).sum::<f64>() / fitted.len() as f64
