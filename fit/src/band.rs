@@ -2,7 +2,7 @@
 //!
 //! k_L enters linearly and is eliminated exactly, bounds included. What is left is a function of (F₀, ln σ), F₀ = F at normal
 //! incidence: in these two the lobe is nearly linear. Its global minimum comes from a coarse scan of the whole box
-//! ([`scan`]), every valley of which starts a Newton search with exact second derivatives ([`profile`]).
+//! ([`scan`]), every valley of which starts a Newton search with exact second derivatives (`profile.rs`).
 
 mod profile;
 mod report;

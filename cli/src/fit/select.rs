@@ -7,7 +7,7 @@ use leafbrdf_core::{Angle, Geometry};
 use super::FitFailure;
 use crate::measurement::Measurement;
 
-/// FIRST:LAST[:STEP] in nm, both ends included.
+/// `FIRST:LAST[:STEP]` in nm, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WavelengthRange {
     /// First wavelength, nm.
