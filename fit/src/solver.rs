@@ -76,7 +76,7 @@ pub struct Minimum<T, const P: usize> {
 /// How near to a bound, in widths of the interval, a parameter that is pushed outwards counts as sitting there.
 const BOUND_MARGIN: f64 = 1e-5;
 
-/// Minimises `objective` over the box from `start` (moved inside where it touches a bound).
+/// Minimises `objective` over the box from `start` (from a point just inside, where it touches a bound or lies beyond).
 ///
 /// The model is never evaluated outside the bounds, and the cost returned is never above that of the start.
 #[inline(always)]
@@ -86,10 +86,11 @@ pub fn minimize<T: Real, const P: usize, O: Objective<T, P>>(
     start: &[T; P],
     options: &SolverOptions<T, P>,
 ) -> Minimum<T, P> {
-    let mut x = *start;
-    for (x, bound) in x.iter_mut().zip(bounds) {
-        *x = bound.inside(*x, T::lit(1e-3));
-    }
+    let asked: [T; P] = core::array::from_fn(|i| bounds[i].clip(start[i]));
+    let mut x: [T; P] = core::array::from_fn(|i| bounds[i].inside(start[i], T::lit(1e-3)));
+    // a start at a bound is looked at as it is, and left only for something better
+    let moved = (0..P).any(|i| x[i] != asked[i]);
+    let at_start = if moved { Some(objective.evaluate(&asked)) } else { None };
     let mut here = objective.evaluate(&x);
     let mut lambda = T::ZERO;
     let mut iterations = 0;
@@ -138,7 +139,10 @@ pub fn minimize<T: Real, const P: usize, O: Objective<T, P>>(
         }
     }
 
-    let (x, here, at_bound) = settle(objective, bounds, x, here);
+    let (x, here, at_bound) = match at_start {
+        Some(there) if there.cost < here.cost => settle(objective, bounds, asked, there),
+        _ => settle(objective, bounds, x, here),
+    };
     Minimum { x, evaluation: here, at_bound, iterations, termination }
 }
 
