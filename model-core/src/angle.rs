@@ -1,6 +1,6 @@
 //! Angles: radians inside, degrees at the door, and no digit lost on the way in.
 
-use crate::Real;
+use crate::{DomainError, Real};
 
 /// An angle, held in radians.
 ///
@@ -98,6 +98,18 @@ impl<T: Real> Angle<T> {
     #[inline]
     pub fn cos(self) -> T {
         self.sin_cos().1
+    }
+
+    /// cos θ_a of an incidence angle on a facet, grazing incidence included.
+    ///
+    /// # Errors
+    /// [`DomainError`] unless 0° ≤ θ_a ≤ 90°.
+    pub fn incidence_cosine(self) -> Result<T, DomainError> {
+        if !(self.hi >= T::ZERO && self.hi <= T::HALF * T::PI) {
+            return Err(DomainError::new("theta_a", "0° ≤ theta_a ≤ 90°"));
+        }
+        // at 90° itself rounding leaves ±1e-33
+        Ok(self.cos().max(T::ZERO))
     }
 
     /// tan x.

@@ -29,7 +29,7 @@ pub struct Arguments {
     /// Imaginary part κ of the refractive index, ≥ 0 [default: 0]
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     kappa: Option<List>,
-    /// Incidence angle on the facet in degrees, 0 ≤ θ < 90
+    /// Incidence angle on the facet in degrees, 0 ≤ θ ≤ 90
     #[arg(long, value_name = "LIST", required_unless_present = "points", allow_hyphen_values = true)]
     theta: Option<List>,
     #[command(flatten)]
@@ -43,16 +43,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         vec![
             input("n", "--n", "n", arguments.n.as_ref(), None),
             input("k", "--kappa", "kappa", arguments.kappa.as_ref(), Some(0.0)),
-            input("theta_deg", "--theta", "theta_s", arguments.theta.as_ref(), None),
+            input("theta_deg", "--theta", "theta_a", arguments.theta.as_ref(), None),
         ],
     )?;
     tabulate(&inputs, &arguments.output, ["n", "k", "theta_deg", "f", "r_s", "r_p"], |row| {
         let [n, kappa, theta] = super::inputs::fixed(row);
         let index = AnyIndex::new(n, kappa)?;
-        let theta_a = Angle::from_degrees(theta);
-        // The incidence angle has the domain of a zenith angle.
-        leafbrdf_core::Illumination::new(theta_a)?;
-        let cos_theta_a = theta_a.cos();
+        let cos_theta_a = Angle::from_degrees(theta).incidence_cosine()?;
         let polarized = index.polarized(cos_theta_a);
         Ok([n, kappa, theta, index.fresnel(cos_theta_a), polarized.r_s, polarized.r_p].map(Cell::Number))
     })
