@@ -4,16 +4,19 @@
 //! |---|---|
 //! | `select` | which wavelengths and directions take part |
 //! | `bands` | k_L, n, σ at each wavelength: the inversion, `bands.csv`, `dhrf.csv` |
+//! | `prospect` | structure and contents from hemispherical spectra |
 //! | `summary` | `summary.json`: the leaf as a whole, and what the user should be warned of |
 //! | `leaves` | `leaves.csv`: one row a leaf |
 
 mod bands;
 mod leaves;
+mod prospect;
 mod select;
 mod summary;
 
 pub use bands::{BandsOutcome, fit_bands, write_bands};
-pub use leaves::{LeafRow, write_leaves};
+pub use leaves::{LeafRecord, LeafRow, LeafValues, write_leaves, write_records};
+pub use prospect::{ProspectOptions, ProspectOutcome, fit_prospect};
 pub use select::{Selected, Selection, WavelengthRange};
 pub use summary::Summary;
 

@@ -3,6 +3,8 @@
 //! The golden file is that of the crate `prospect`; what made it is said in its `tests/golden.rs`.
 
 use std::collections::HashMap;
+use std::fmt::Write as _;
+use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -170,4 +172,246 @@ fn what_is_wrong_is_named_with_its_likely_unit() {
     points("cab\n40\n", &["no column n_struct"]);
     points("n_struct,cab\n1.5,\n", &["line 2", "cab", "expected a number"]);
     points("version,n_struct,cant\n5B,1.5,2\n", &["line 2", "cant", "use version D or PRO"]);
+}
+
+// `leafbrdf fit --model prospect`
+
+const LEAVES: &str = "leaf,version,n_struct,cab,car,cant,cbrown,cw,cm
+green,D,1.45,42,9,1.2,0.03,0.011,0.006
+thick,D,2.3,66,14,4,0.2,0.027,0.015
+pale,D,1.2,9,4,0.5,0.1,0.006,0.0035
+";
+
+/// A file of spectra of several samples, simulated by the command.
+fn simulated(leaves: &str, wavelengths: &str, columns: &[&str]) -> String {
+    let points = Points::from_bytes("leaves", leaves.as_bytes()).unwrap();
+    let spectra = table(&["prospect", "--points", "-", "--wavelengths", wavelengths], leaves);
+    let bands = spectra.len() / points.len();
+    let mut text = format!("# species: simulated\nsample,wavelength_nm,{}\n", columns.join(","));
+    for (row, numbers) in self::columns(&spectra, &[&["wavelength_nm"], columns].concat()).iter().enumerate() {
+        text.push_str(points.text(row / bands, points.require("leaf").unwrap()));
+        numbers.iter().for_each(|number| write!(text, ",{number}").unwrap());
+        text.push('\n');
+    }
+    text
+}
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new(files: &[(&str, &str)]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in files {
+            fs::write(folder.path().join(name), text).unwrap();
+        }
+        Folder(folder)
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.path().join(name).to_str().unwrap().to_string()
+    }
+
+    /// Runs the fit of some files into `out`; status and standard error.
+    fn fit(&self, files: &[&str], more: &[&str]) -> (Option<i32>, String) {
+        let paths: Vec<String> = files.iter().map(|file| self.path(file)).collect();
+        let mut arguments = vec!["fit"];
+        arguments.extend(paths.iter().map(String::as_str));
+        let out = self.path("out");
+        arguments.extend(["--model", "prospect", "-o", &out]);
+        arguments.extend(more);
+        let output = leafbrdf_with(&arguments, b"");
+        assert!(output.stdout.is_empty());
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    }
+
+    fn table(&self, name: &str) -> Points {
+        Points::read(Path::new(&self.path(name))).unwrap()
+    }
+
+    fn summary(&self, name: &str) -> serde_json::Value {
+        serde_json::from_slice(&fs::read(self.path(name)).unwrap()).unwrap()
+    }
+}
+
+#[test]
+fn leaves_come_back_through_files() {
+    let names = ["n_struct", "cab", "car", "cant", "cbrown", "cw", "cm"];
+    let truth = columns(&Points::from_bytes("leaves", LEAVES.as_bytes()).unwrap(), &names);
+    // both spectra on the tables' wavelengths and between them, and each alone
+    for (wavelengths, measured) in [
+        ("400:2500:1", &["reflectance", "transmittance"][..]),
+        ("410.5:2400:3.7", &["transmittance", "reflectance"]),
+        ("400:2500:1", &["reflectance"]),
+        ("400:2500:1", &["transmittance"]),
+    ] {
+        let folder = Folder::new(&[("sphere.csv", &simulated(LEAVES, wavelengths, measured))]);
+        let (status, message) = folder.fit(&["sphere.csv"], &[]);
+        assert_eq!(status, Some(0), "{message}");
+        let leaves = folder.table("out/leaves.csv");
+        for (row, (found, truth)) in columns(&leaves, &names).iter().zip(&truth).enumerate() {
+            assert_eq!(leaves.text(row, leaves.require("leaf").unwrap()), ["green", "thick", "pale"][row]);
+            assert_eq!(leaves.text(row, leaves.require("status").unwrap()), "done");
+            for ((found, truth), name) in found.iter().zip(truth).zip(names) {
+                // shortest round trip loses no bit of the spectra: rounding of the model only
+                assert!((found / truth - 1.0).abs() < 1e-8, "{name} {found} {truth} from {measured:?}");
+            }
+        }
+        let spectrum = folder.table("out/green/spectrum.csv");
+        let modelled = format!("{}_modelled", measured[0]);
+        for pair in columns(&spectrum, &[measured[0], &modelled]) {
+            assert!((pair[0] - pair[1]).abs() < 1e-10);
+        }
+        let summary = folder.summary("out/green/summary.json");
+        assert_eq!((&summary["model"], &summary["prospect"]), (&"prospect".into(), &"D".into()));
+        assert_eq!(summary["metadata"]["species"], "simulated");
+        assert!(summary["parameters"]["cab"]["standard_error"].as_f64().unwrap() < 1e-6);
+        assert_eq!(summary["search"]["starts_that_agree"], 4);
+    }
+}
+
+#[test]
+fn the_columns_of_the_files_are_those_of_the_contract() {
+    let folder = Folder::new(&[("oak.csv", &simulated(LEAVES, "400:2500:20", &["reflectance", "transmittance"]))]);
+    assert_eq!(folder.fit(&["oak.csv"], &[]).0, Some(0));
+    let first = |name: &str| fs::read_to_string(folder.path(name)).unwrap().lines().next().unwrap().to_string();
+    assert!(first("out/leaves.csv").starts_with(
+        "leaf,status,model,normalization,n,sigma,tilt_in_plane_deg,tilt_lateral_deg,n_struct,cab,car,cant,cbrown,cw,cm,prot,cbc,rmse,r2,"
+    ));
+    assert_eq!(
+        first("out/thick/spectrum.csv"),
+        "wavelength_nm,reflectance,transmittance,reflectance_modelled,transmittance_modelled"
+    );
+    let leaves = folder.table("out/leaves.csv");
+    for empty in ["normalization", "n", "sigma", "tilt_lateral_deg", "prot", "cbc"] {
+        assert_eq!(leaves.text(0, leaves.require(empty).unwrap()), "", "{empty}");
+    }
+}
+
+#[test]
+fn held_tied_and_split_parameters_are_told_apart() {
+    let one = "leaf,version,n_struct,cab,car,cw,prot,cbc\na,PRO,1.6,40,10,0.01,0.001,0.005\n";
+    let folder = Folder::new(&[("a.csv", &simulated(one, "400:2500:5", &["reflectance", "transmittance"]))]);
+    let more = ["--prospect", "pro", "--car-per-cab", "0.25", "--fix", "cant=0,cbrown=0"];
+    let (status, message) = folder.fit(&["a.csv"], &more);
+    assert_eq!(status, Some(0), "{message}");
+    let leaves = folder.table("out/leaves.csv");
+    let row = &columns(&leaves, &["n_struct", "cab", "car", "cant", "cm", "prot", "cbc"])[0];
+    for (found, truth) in row.iter().zip([1.6, 40.0, 10.0, 0.0, 0.006, 0.001, 0.005]) {
+        assert!((found - truth).abs() <= 1e-8 * truth, "{row:?}");
+    }
+    let summary = folder.summary("out/summary.json");
+    assert_eq!(summary["parameters"]["car"]["how"], "tied to cab");
+    assert_eq!(summary["parameters"]["cant"]["how"], "held");
+    assert_eq!(summary["parameters"]["cm"]["how"], "prot + cbc");
+    assert!(summary["parameters"]["cm"]["standard_error"].is_number());
+}
+
+#[test]
+fn the_prior_of_n_is_held_where_there_is_no_transmittance() {
+    let one = "leaf,n_struct,cab,car,cw,cm\na,1.8,40,10,0.012,0.0065\n";
+    let folder = Folder::new(&[("a.csv", &simulated(one, "400:2500:5", &["reflectance"]))]);
+    let (status, message) = folder.fit(&["a.csv"], &["--n-prior", "--fix", "cant=0,cbrown=0"]);
+    assert_eq!(status, Some(0), "{message}");
+    let summary = folder.summary("out/summary.json");
+    assert_eq!(summary["parameters"]["n_struct"]["how"], "from the plateau, held");
+    assert!(summary["n_prior"]["standard_deviation"].as_f64().unwrap() > 0.01);
+    // the ordinary leaf of the prior: N to the precision of its bisection, and with it everything else
+    let row = &columns(&folder.table("out/leaves.csv"), &["n_struct", "cab"])[0];
+    assert!((row[0] - 1.8).abs() < 1e-6 && (row[1] - 40.0).abs() < 1e-3, "{row:?}");
+}
+
+#[test]
+fn missing_values_sd_and_wavelengths_outside_are_counted() {
+    let file = "wavelength_nm,reflectance,transmittance,reflectance_sd,transmittance_sd,remark\n\
+                350,0.05,0.01,0.01,0.01,x\n550,0.13,0.12,0.01,0.01,x\n670,-0.001,,0.01,,x\n700,0.13,0.12,0.01,0.01,\n\
+                800,0.45,0.46,0.01,0.01,\n900,NaN,0.46,,0.01,\n1000,0.45,0.47,0.01,0.01,\n";
+    let folder = Folder::new(&[("a.csv", file)]);
+    let (status, message) = folder.fit(&["a.csv"], &["--free", "n_struct,cab,cm", "--fix", "car=8"]);
+    assert_eq!(status, Some(0), "{message}");
+    let summary = folder.summary("out/summary.json");
+    assert_eq!(summary["weights"], "1/sd^2");
+    let values = &summary["values"];
+    assert_eq!((&values["used"], &values["negative_among_them"]), (&10.into(), &1.into()));
+    assert_eq!(values["left_out"], serde_json::json!({"missing": 2, "other_wavelengths": 2}));
+    assert_eq!(summary["wavelengths_nm"]["first"], 550.0);
+
+    let ranged = ["--free", "n_struct,cab", "--wavelengths", "500:800", "--ignore-sd"];
+    assert_eq!(folder.fit(&["a.csv"], &ranged).0, Some(0));
+    let summary = folder.summary("out/summary.json");
+    assert_eq!((&summary["weights"], &summary["wavelengths_nm"]["count"]), (&"equal".into(), &4.into()));
+}
+
+#[test]
+fn every_rule_of_spectra_files_has_its_message() {
+    let refused = |file: &str, parts: &[&str]| {
+        let folder = Folder::new(&[("bad.csv", file)]);
+        let (status, message) = folder.fit(&["bad.csv"], &[]);
+        assert_eq!(status, Some(1), "{message}");
+        for part in parts.iter().chain(&["bad.csv", "1 of 1 leaves failed"]) {
+            assert!(message.contains(part), "no {part:?} in: {message}");
+        }
+        assert!(!Path::new(&folder.path("out/summary.json")).exists());
+        let leaves = folder.table("out/leaves.csv");
+        assert_eq!(leaves.text(0, leaves.require("status").unwrap()), "failed");
+    };
+    let head = "wavelength_nm,reflectance\n";
+    refused("", &["has no data"]);
+    refused(head, &["no row of values"]);
+    refused("wavelength,reflectance\n550,0.1\n", &["line 1", "names are matched exactly"]);
+    refused("wavelength_nm;reflectance\n550;0,1\n", &["semicolons"]);
+    refused("wavelength_nm,rho\n550,0.1\n", &["no column reflectance or transmittance"]);
+    refused("# quantity: brf\ntheta_s_deg,30\ntheta_v_deg,60\nphi_v_deg,180\n550,0.2\n", &["--model bands"]);
+    refused("wavelength_nm,reflectance,reflectance\n550,0.1,0.1\n", &["second column reflectance"]);
+    refused("wavelength_nm,reflectance,transmittance_sd\n550,0.1,0.1\n", &["without a column transmittance"]);
+    refused(&format!("{head}550,45\n"), &["line 2, column 2 (reflectance)", "per cent? 45 % is 0.45"]);
+    refused(&format!("{head}550,4500\n"), &["scaled by 10000"]);
+    refused(&format!("{head}550,-9999\n"), &["Leave the cell empty"]);
+    refused(&format!("{head}0.55,0.1\n"), &["line 2, column 1 (wavelength_nm)", "0.55 µm is 550 nm"]);
+    refused(&format!("{head}550,0.1,3\n"), &["3 cells: expected 2"]);
+    refused(&format!("{head}550,0.1\n560,0.2\n550,0.1\n"), &["line 4", "stands in line 2 already"]);
+    refused(&format!("{head}550,\n560,NA\n"), &["every value is missing"]);
+    refused(&format!("{head}550,n.d.\n"), &["missing value?"]);
+    refused(&format!("{head}300,0.1\n310,0.2\n"), &["no wavelength is left"]);
+    refused("wavelength_nm,reflectance,sample\n550,0.1,\n", &["name of a sample"]);
+    refused(
+        "wavelength_nm,reflectance,reflectance_sd\n550,0.1,0\n",
+        &["no positive standard deviation", "--ignore-sd"],
+    );
+}
+
+#[test]
+fn one_leaf_that_fails_stops_no_other_and_no_name_is_used_twice() {
+    let good = simulated(LEAVES, "400:2500:20", &["reflectance", "transmittance"]);
+    let folder = Folder::new(&[("a.csv", &good), ("bad.csv", "wavelength_nm\n550\n"), ("again.csv", &good)]);
+    let (status, message) = folder.fit(&["a.csv", "bad.csv", "again.csv"], &["--threads", "2"]);
+    assert_eq!(status, Some(1));
+    assert!(message.contains("4 of 7 leaves failed") && message.contains("would overwrite"), "{message}");
+    let leaves = folder.table("out/leaves.csv");
+    let status: Vec<&str> = (0..leaves.len()).map(|row| leaves.text(row, 1)).collect();
+    assert_eq!(status, ["done", "done", "done", "failed", "failed", "failed", "failed"]);
+}
+
+#[test]
+fn options_that_contradict_each_other_are_wrong_usage() {
+    let folder = Folder::new(&[("a.csv", "wavelength_nm,reflectance\n550,0.1\n")]);
+    for (more, part) in [
+        (&["--fix", "cab=40", "--free", "cab,n_struct"][..], "cab is free and fixed"),
+        (&["--fix", "cm=20"], "20 g m⁻² = 0.002 g cm⁻²"),
+        (&["--fix", "cm"], "expected NAME=VALUE"),
+        (&["--free", "chlorophyll"], "is no parameter: expected one of n_struct, cab"),
+        (&["--free", "cab"], "n_struct is neither free nor held"),
+        (&["--free", "n_struct,prot"], "no coefficients for prot"),
+        (&["--prospect", "PRO", "--free", "n_struct,cm,prot"], "prot + cbc"),
+        (&["--car-per-cab", "0.25", "--free", "n_struct,car"], "tied to cab"),
+        (&["--bounds", "cab=0:1000"], "within 0:300"),
+        (&["--bounds", "cab=0:80", "--fix", "cab=40"], "not free"),
+    ] {
+        let (status, message) = folder.fit(&["a.csv"], more);
+        assert_eq!(status, Some(2), "{more:?}: {message}");
+        assert!(message.contains(part), "{more:?}: no {part:?} in: {message}");
+    }
+    let (file, out) = (folder.path("a.csv"), folder.path("out"));
+    let bands = leafbrdf_with(&["fit", &file, "--model", "bands", "-o", &out, "--n-prior"], b"");
+    assert_eq!(bands.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&bands.stderr).contains("--n-prior is an option of --model prospect"));
 }

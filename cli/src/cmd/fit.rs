@@ -1,4 +1,6 @@
-//! `leafbrdf fit`: the main job, inversion of measured leaf BRDF.
+//! `leafbrdf fit`: the main job, inversion of measured leaf BRDF; and of hemispherical spectra.
+
+mod prospect;
 
 use std::collections::HashMap;
 use std::fs;
@@ -22,18 +24,24 @@ use super::{Failure, NormalizationName};
 enum Model {
     /// k_L, n and σ at each wavelength (§4.2)
     Bands,
+    /// PROSPECT's parameters, from hemispherical reflectance, transmittance or both
+    Prospect,
 }
 
 /// Invert measured leaf BRDF: parameters with standard errors, from measurement files
 ///
 /// Writes DIR/bands.csv, DIR/dhrf.csv and DIR/summary.json, into a folder DIR/LEAF for each leaf where there are several, and
 /// DIR/leaves.csv with one row a leaf. A leaf that fails is named, and the others are still done.
+///
+/// With --model prospect the files are hemispherical spectra (columns wavelength_nm, reflectance and/or transmittance as
+/// fractions, optionally sample, reflectance_sd, transmittance_sd), and DIR/spectrum.csv holds them beside the modelled ones.
 #[derive(Args)]
 #[command(after_help = "Examples:
   leafbrdf fit laurel.csv --model bands -o laurel-fit
-  leafbrdf fit leaves/*.csv --model bands --wavelengths 480:879 --normalization cook-torrance -o out")]
+  leafbrdf fit leaves/*.csv --model bands --wavelengths 480:879 --normalization cook-torrance -o out
+  leafbrdf fit sphere.csv --model prospect --prospect D --fix cbrown=0 -o sphere-fit")]
 pub struct Arguments {
-    /// Measurement files, wide or long, plain or gzip; - is standard input
+    /// Measurement files, wide or long (for prospect: spectra), plain or gzip; - is standard input
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     /// What is fitted
@@ -85,6 +93,8 @@ pub struct Arguments {
     /// Threads; as many as the machine has cores without it. The results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    #[command(flatten)]
+    prospect: prospect::Options,
 }
 
 /// LOWER:UPPER.
@@ -152,19 +162,31 @@ impl Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let options = arguments.options()?;
+    match arguments.model {
+        Model::Bands => bands(arguments),
+        Model::Prospect => prospect::run(arguments),
+    }
+}
+
+/// The folder for the results, and the threads that work on them.
+fn prepare(arguments: &Arguments) -> Result<rayon::ThreadPool, Failure> {
     fs::create_dir_all(&arguments.output).map_err(|error| Failure::writing(Some(&arguments.output), &error))?;
     let threads = usize::from(arguments.threads.unwrap_or(0));
-    let pool = rayon::ThreadPoolBuilder::new()
+    rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
-        .map_err(|error| Failure::Failed(format!("threads: {error}")))?;
-    let bar = progress_bar();
+        .map_err(|error| Failure::Failed(format!("threads: {error}")))
+}
+
+fn bands(arguments: &Arguments) -> Result<(), Failure> {
+    let options = arguments.options()?;
+    arguments.prospect.refuse()?;
+    let pool = prepare(arguments)?;
+    let bar = progress_bar("bands");
     let leaves = read(arguments);
     let several = leaves.len() > 1;
     bar.set_length(leaves.iter().filter_map(|leaf| Some(leaf.data.as_ref().ok()?.wavelengths_nm.len() as u64)).sum());
 
-    let Model::Bands = arguments.model;
     let rows: Vec<LeafRow> = pool.install(|| {
         leaves
             .par_iter()
@@ -283,11 +305,11 @@ fn report(rows: &[LeafRow]) -> Result<(), Failure> {
 }
 
 /// On standard error, and only on a terminal.
-fn progress_bar() -> ProgressBar {
+fn progress_bar(of: &str) -> ProgressBar {
     if !io::stderr().is_terminal() {
         return ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
     }
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} bands {eta}")
+    let style = ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {of} {{eta}}"))
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(0).with_style(style)
 }

@@ -18,7 +18,7 @@ pub struct LeafRow {
 }
 
 /// The columns that the contract names, in its order; cells of parameters that a model does not have are empty.
-const COLUMNS: [&str; 23] = [
+const COLUMNS: [&str; 32] = [
     "leaf",
     "status",
     "model",
@@ -42,32 +42,111 @@ const COLUMNS: [&str; 23] = [
     "warnings",
     "file",
     "message",
+    "n_struct_se",
+    "cab_se",
+    "car_se",
+    "cant_se",
+    "cbrown_se",
+    "cw_se",
+    "cm_se",
+    "prot_se",
+    "cbc_se",
 ];
+
+/// What a row says of a leaf that was fitted; `None` where a model has no such parameter.
+#[derive(Clone, Debug, Default)]
+pub struct LeafValues {
+    /// The convention for K that n and σ belong to.
+    pub normalization: Option<String>,
+    /// Refractive index of the surface.
+    pub n: Option<f64>,
+    /// Roughness of the surface.
+    pub sigma: Option<f64>,
+    /// Tilt of the leaf in the principal plane and across it, degrees.
+    pub tilt_deg: [Option<f64>; 2],
+    /// N, C_ab, C_car, C_ant, C_brown, C_w, C_m, C_prot, C_cbc.
+    pub prospect: [Option<f64>; 9],
+    /// Their standard errors.
+    pub prospect_se: [Option<f64>; 9],
+    /// √(Σ residual²/values): sr⁻¹ of BRDF, or for `prospect` a fraction (reflectance, transmittance).
+    pub rmse: f64,
+    /// 1 − Σ residual²/Σ (value − mean)².
+    pub r2: f64,
+    /// Wavelengths fitted.
+    pub bands: usize,
+    /// What the user should know before using the numbers.
+    pub warnings: Vec<String>,
+}
+
+impl From<&Summary> for LeafValues {
+    fn from(summary: &Summary) -> Self {
+        LeafValues {
+            n: Some(summary.n),
+            sigma: Some(summary.sigma),
+            rmse: summary.rmse,
+            r2: summary.r2,
+            bands: summary.fitted,
+            warnings: summary.warnings.clone(),
+            ..LeafValues::default()
+        }
+    }
+}
+
+/// One row of `leaves.csv`: the leaf's name, its file, and what was found or the sentence that says why nothing was.
+pub type LeafRecord = (String, String, Result<LeafValues, String>);
 
 /// Writes `leaves.csv` into a folder, whole or not at all.
 ///
 /// # Errors
 /// The system's.
 pub fn write_leaves(folder: &Path, model: &str, normalization: &str, rows: &[LeafRow]) -> io::Result<()> {
+    let with_convention =
+        |summary| LeafValues { normalization: Some(normalization.to_string()), ..LeafValues::from(summary) };
+    let records: Vec<LeafRecord> = rows
+        .iter()
+        .map(|row| (row.leaf.clone(), row.file.clone(), row.result.as_ref().map(with_convention).map_err(Clone::clone)))
+        .collect();
+    write_records(folder, model, Some(normalization), &records)
+}
+
+/// The same for any model; `normalization` is what failed leaves would have had, where the model has one.
+///
+/// # Errors
+/// The system's.
+pub fn write_records(
+    folder: &Path,
+    model: &str,
+    normalization: Option<&str>,
+    records: &[LeafRecord],
+) -> io::Result<()> {
     let mut table = TableWriter::create(Some(&folder.join("leaves.csv")), Some(Format::Csv), &COLUMNS)?;
-    for LeafRow { leaf, file, result } in rows {
+    for (leaf, file, result) in records {
         let status = if result.is_ok() { "done" } else { "failed" };
-        let mut row = vec![leaf.as_str(), status, model, normalization].into_iter().map(Cell::Text).collect::<Vec<_>>();
-        let message = match result {
-            Ok(summary) => {
-                row.extend([Cell::Number(summary.n), Cell::Number(summary.sigma)]);
-                row.extend([Cell::Empty; 11]);
-                row.extend([Cell::Number(summary.rmse), Cell::Number(summary.r2)]);
-                row.extend([Cell::Count(summary.fitted as u64), Cell::Count(summary.warnings.len() as u64)]);
-                summary.warnings.join(" | ")
+        let message;
+        let mut row = vec![Cell::Text(leaf), Cell::Text(status), Cell::Text(model)];
+        match result {
+            Ok(values) => {
+                row.push(values.normalization.as_deref().map_or(Cell::Empty, Cell::Text));
+                row.extend([number(&values.n), number(&values.sigma)]);
+                row.extend(values.tilt_deg.iter().chain(&values.prospect).map(number));
+                row.extend([Cell::Number(values.rmse), Cell::Number(values.r2)]);
+                row.extend([Cell::Count(values.bands as u64), Cell::Count(values.warnings.len() as u64)]);
+                message = values.warnings.join(" | ");
+                row.extend([Cell::Text(file), Cell::Text(&message)]);
+                row.extend(values.prospect_se.iter().map(number));
             }
             Err(sentence) => {
+                row.push(normalization.map_or(Cell::Empty, Cell::Text));
                 row.extend([Cell::Empty; 17]);
-                sentence.clone()
+                row.extend([Cell::Text(file), Cell::Text(sentence)]);
+                row.extend([Cell::Empty; 9]);
             }
-        };
-        row.extend([Cell::Text(file), Cell::Text(&message)]);
+        }
         table.row(&row)?;
     }
     table.finish()
+}
+
+fn number<'a>(number: &Option<f64>) -> Cell<'a> {
+    number.map_or(Cell::Empty, Cell::Number)
 }

@@ -1,0 +1,300 @@
+//! `leafbrdf fit --model prospect`: structure and contents of leaves from hemispherical spectra.
+
+use std::collections::HashMap;
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+use std::str::FromStr;
+
+use clap::Args;
+use leafbrdf::fit::{LeafRecord, ProspectOptions, ProspectOutcome, fit_prospect, write_records};
+use leafbrdf::output::file_name;
+use leafbrdf::spectra::{LeafSpectra, read_spectra};
+use leafbrdf_fit::Interval;
+use leafbrdf_fit::hemispherical::{Free, default_free};
+use leafbrdf_prospect::{Error, LeafParams, Parameter, Prospect, table};
+use rayon::prelude::*;
+
+use super::super::Failure;
+use super::super::version::VersionName;
+use super::{Arguments, Range, prepare, progress_bar};
+
+/// The options that only this model has.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Options of --model prospect")]
+pub struct Options {
+    /// Version of PROSPECT [default: D]
+    #[arg(long, value_enum, ignore_case = true)]
+    prospect: Option<VersionName>,
+    /// Parameters that are free, such as n_struct,cab,cm; all others are held, at 0 or as --fix says [default: all of the
+    /// version that --fix and --car-per-cab leave; for PRO without cm, which is prot + cbc there]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    free: Vec<Name>,
+    /// Parameters that are held, and where
+    #[arg(long, value_name = "NAME=VALUE,…", value_delimiter = ',', allow_hyphen_values = true)]
+    fix: Vec<Value>,
+    /// Bounds of free parameters [default: n_struct 1:5, cab 0:150, car 0:40, cant 0:60, cbrown 0:4, cw 0:0.12, cm 0:0.06,
+    /// prot 0:0.008, cbc 0:0.06]
+    #[arg(long, value_name = "NAME=LOWER:UPPER,…", value_delimiter = ',', allow_hyphen_values = true)]
+    bounds: Vec<Bounds>,
+    /// Tie carotenoids to chlorophyll: C_car = RATIO · C_ab (0.25 is usual)
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
+    car_per_cab: Option<f64>,
+    /// Where a leaf has no transmittance: take n_struct from its reflectance at 1131 nm (or 800 nm), and hold it
+    #[arg(long)]
+    n_prior: bool,
+}
+
+/// A parameter by its name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Name(Parameter);
+
+/// NAME=VALUE.
+#[derive(Clone, Copy, Debug)]
+struct Value(Parameter, f64);
+
+/// NAME=LOWER:UPPER.
+#[derive(Clone, Copy, Debug)]
+struct Bounds(Parameter, Interval<f64>);
+
+impl FromStr for Name {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Parameter::ALL.into_iter().find(|parameter| parameter.name() == text.trim()).map(Name).ok_or_else(|| {
+            let names = Parameter::ALL.map(Parameter::name).join(", ");
+            format!("{text:?} is no parameter: expected one of {names}")
+        })
+    }
+}
+
+impl FromStr for Value {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("{text:?}: expected NAME=VALUE, such as cw=0.01");
+        let (name, value) = text.split_once('=').ok_or_else(wrong)?;
+        let Name(parameter) = name.parse()?;
+        value.trim().parse().map(|value| Value(parameter, value)).map_err(|_| wrong())
+    }
+}
+
+impl FromStr for Bounds {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("{text:?}: expected NAME=LOWER:UPPER, such as cab=0:80");
+        let (name, range) = text.split_once('=').ok_or_else(wrong)?;
+        let Name(parameter) = name.parse()?;
+        let Range(lower, upper) = range.parse().map_err(|_| wrong())?;
+        let (lowest, highest) = parameter.limits();
+        if lower < lowest || upper > highest {
+            return Err(format!("{text:?}: expected bounds within {lowest}:{highest}"));
+        }
+        Ok(Bounds(parameter, Interval::new(lower, upper)))
+    }
+}
+
+impl Options {
+    /// For the other models: none of these options must be there.
+    pub fn refuse(&self) -> Result<(), Failure> {
+        let given = [
+            ("--prospect", self.prospect.is_some()),
+            ("--free", !self.free.is_empty()),
+            ("--fix", !self.fix.is_empty()),
+            ("--bounds", !self.bounds.is_empty()),
+            ("--car-per-cab", self.car_per_cab.is_some()),
+            ("--n-prior", self.n_prior),
+        ];
+        match given.iter().find(|(_, given)| *given) {
+            Some((option, _)) => Err(Failure::Usage(format!("{option} is an option of --model prospect"))),
+            None => Ok(()),
+        }
+    }
+
+    /// What is sought, checked as far as that can be done without a spectrum.
+    fn options(&self, arguments: &Arguments) -> Result<ProspectOptions, Failure> {
+        let usage = |message: String| Err(Failure::Usage(message));
+        let version = self.prospect.map_or(leafbrdf_prospect::Version::D, |name| name.0);
+        let mut held = LeafParams::with_n_struct(f64::NAN);
+        for (place, Value(parameter, value)) in self.fix.iter().enumerate() {
+            if self.fix.iter().take(place).any(|other| other.0 == *parameter) {
+                return usage(format!("--fix {} stands twice", parameter.name()));
+            }
+            held.set(*parameter, *value);
+        }
+        let fixed = |parameter: Parameter| self.fix.iter().any(|value| value.0 == parameter);
+        let tied = |parameter: Parameter| parameter == Parameter::Car && self.car_per_cab.is_some();
+        let names: Vec<Parameter> = if self.free.is_empty() {
+            default_free(version).into_iter().filter(|parameter| !fixed(*parameter) && !tied(*parameter)).collect()
+        } else {
+            self.free.iter().map(|name| name.0).collect()
+        };
+        for (place, parameter) in names.iter().enumerate() {
+            let name = parameter.name();
+            if fixed(*parameter) {
+                return usage(format!("{name} is free and fixed: leave it out of --free or of --fix"));
+            }
+            if tied(*parameter) {
+                return usage(
+                    "car is free and tied to cab: leave it out of --free, or leave --car-per-cab out".to_string(),
+                );
+            }
+            if names.iter().take(place).any(|other| other == parameter) {
+                return usage(format!("--free {name} stands twice"));
+            }
+        }
+        if names.is_empty() {
+            return usage("every parameter is held: leave one of them out of --fix".to_string());
+        }
+        if held.n_struct.is_nan() {
+            if !names.contains(&Parameter::NStruct) && !self.n_prior {
+                let message = "n_struct is neither free nor held: add it to --free, or hold it with --fix n_struct=1.5";
+                return usage(message.to_string());
+            }
+            held.n_struct = 1.5;
+        }
+        let free: Vec<Free<f64>> = names
+            .into_iter()
+            .map(|parameter| match self.bounds.iter().find(|bounds| bounds.0 == parameter) {
+                Some(Bounds(_, bounds)) => Free { parameter, bounds: *bounds },
+                None => Free::new(parameter),
+            })
+            .collect();
+        if let Some(Bounds(parameter, _)) =
+            self.bounds.iter().find(|bounds| !free.iter().any(|free| free.parameter == bounds.0))
+        {
+            return usage(format!("--bounds {}: the parameter is not free", parameter.name()));
+        }
+        // every rule of the model shows where nothing that is free is 0
+        let mut middle = held;
+        for one in &free {
+            middle.set(one.parameter, 0.5 * (one.bounds.lower + one.bounds.upper));
+        }
+        let model = Prospect::new(table::full(version));
+        let checked = match self.car_per_cab {
+            Some(ratio) => model.with_car_per_cab(ratio),
+            None => Ok(model),
+        };
+        checked.and_then(|model| model.band(&middle, 0)).map_err(|error| {
+            let option = match error {
+                Error::CarPerCab { .. } | Error::CarGivenAndTied => "--car-per-cab",
+                Error::Outside { parameter, .. } | Error::NotInVersion { parameter, .. } if !fixed(parameter) => {
+                    "--free"
+                }
+                Error::DryMatterTwice if !self.free.is_empty() => "--free",
+                _ => "--fix",
+            };
+            Failure::Usage(format!("{option}: {error}"))
+        })?;
+        Ok(ProspectOptions {
+            version,
+            free,
+            held,
+            car_per_cab: self.car_per_cab,
+            n_prior: self.n_prior,
+            wavelengths: arguments.wavelengths,
+            use_sd: !arguments.ignore_sd,
+        })
+    }
+}
+
+/// One leaf of the input, or why there is none.
+struct Input {
+    name: String,
+    file: String,
+    data: Result<LeafSpectra, String>,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let options = arguments.prospect.options(arguments)?;
+    let pool = prepare(arguments)?;
+    let bar = progress_bar("leaves");
+    let leaves = read(arguments);
+    let several = leaves.len() > 1;
+    bar.set_length(leaves.len() as u64);
+
+    let results: Vec<Result<ProspectOutcome, String>> = pool.install(|| {
+        leaves
+            .par_iter()
+            .map(|leaf| {
+                let folder =
+                    if several { arguments.output.join(file_name(&leaf.name)) } else { arguments.output.clone() };
+                let result = leaf.data.as_ref().map_err(Clone::clone).and_then(|data| {
+                    let outcome = fit_prospect(data, &options)
+                        .map_err(|failure| format!("{}: leaf {}: {failure}", leaf.file, leaf.name))?;
+                    write(&folder, data, leaf, &outcome)
+                        .map_err(|error| format!("{}: cannot be written: {error}", folder.display()))?;
+                    Ok(outcome)
+                });
+                bar.inc(1);
+                result
+            })
+            .collect()
+    });
+    bar.finish_and_clear();
+
+    let values =
+        |result: &Result<ProspectOutcome, String>| result.as_ref().map(ProspectOutcome::values).map_err(Clone::clone);
+    let records: Vec<LeafRecord> =
+        leaves.iter().zip(&results).map(|(leaf, r)| (leaf.name.clone(), leaf.file.clone(), values(r))).collect();
+    write_records(&arguments.output, "prospect", None, &records)
+        .map_err(|error| Failure::writing(Some(&arguments.output.join("leaves.csv")), &error))?;
+    report(&leaves, &results)
+}
+
+fn write(folder: &Path, data: &LeafSpectra, leaf: &Input, outcome: &ProspectOutcome) -> io::Result<()> {
+    fs::create_dir_all(folder)?;
+    outcome.write(folder, data, &leaf.file)
+}
+
+/// All leaves of all files, each under a name of its own; a file that cannot be read is one failed leaf.
+fn read(arguments: &Arguments) -> Vec<Input> {
+    let mut inputs = Vec::new();
+    let mut places: HashMap<String, String> = HashMap::new();
+    for path in &arguments.files {
+        let file = path.display().to_string();
+        match read_spectra(path) {
+            Ok(leaves) => inputs.extend(leaves.into_iter().map(|leaf| {
+                let name = leaf.name.clone();
+                let data = match places.get(&file_name(&name)) {
+                    Some(other) => Err(format!(
+                        "{file}: leaf {name} has the name of one in {other}, whose results it would overwrite: give one of them \
+                         another file name or sample"
+                    )),
+                    None => Ok(leaf),
+                };
+                places.entry(file_name(&name)).or_insert_with(|| file.clone());
+                Input { name, file: file.clone(), data }
+            })),
+            Err(error) => {
+                let name = path.file_stem().map_or_else(|| file.clone(), |stem| stem.to_string_lossy().into_owned());
+                inputs.push(Input { name, file, data: Err(error.to_string()) });
+            }
+        }
+    }
+    inputs
+}
+
+/// Results, warnings and failures on standard error; failure of the command where a leaf has failed.
+fn report(leaves: &[Input], results: &[Result<ProspectOutcome, String>]) -> Result<(), Failure> {
+    let mut errors = io::stderr().lock();
+    let mut failed = 0;
+    for (leaf, result) in leaves.iter().zip(results) {
+        // Messages are a courtesy: where standard error is closed, the files are what was asked for.
+        let _ = match result {
+            Ok(outcome) => {
+                let _ = writeln!(errors, "{}: {}", leaf.name, outcome.line());
+                outcome.warnings.iter().try_for_each(|warning| writeln!(errors, "warning: {}: {warning}", leaf.name))
+            }
+            Err(sentence) => {
+                failed += 1;
+                writeln!(errors, "error: {sentence}")
+            }
+        };
+    }
+    match failed {
+        0 => Ok(()),
+        _ => Err(Failure::Failed(format!("{failed} of {} leaves failed, the others are done", leaves.len()))),
+    }
+}
