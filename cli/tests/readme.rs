@@ -88,8 +88,19 @@ fn every_local_link_leads_to_a_file() {
 fn every_law_in_the_model_document_has_the_test_it_names() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut sources = String::new();
-    for file in ["model-core/tests/properties.rs", "model-core/tests/dhrf.rs", "cli/src/simulate.rs"] {
-        sources.push_str(&fs::read_to_string(root.join(file)).unwrap());
+    let mut folders: Vec<_> = ["model-core", "prospect", "fit", "cli", "fuzz"]
+        .iter()
+        .flat_map(|package| ["src", "tests"].map(|part| root.join(package).join(part)))
+        .collect();
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                sources.push_str(&fs::read_to_string(path).unwrap());
+            }
+        }
     }
     let text = fs::read_to_string(root.join("docs/model.md")).unwrap();
     // a test's name is a sentence: four words at least
