@@ -405,6 +405,8 @@ fn options_that_contradict_each_other_are_wrong_usage() {
         (&["--car-per-cab", "0.25", "--free", "n_struct,car"], "tied to cab"),
         (&["--bounds", "cab=0:1000"], "within 0:300"),
         (&["--bounds", "cab=0:80", "--fix", "cab=40"], "not free"),
+        (&["--quantity", "brf"], "--quantity has no meaning for --model prospect"),
+        (&["--robust"], "--robust has no meaning"),
     ] {
         let (status, message) = folder.fit(&["a.csv"], more);
         assert_eq!(status, Some(2), "{more:?}: {message}");

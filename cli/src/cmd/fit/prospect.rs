@@ -10,6 +10,7 @@ use clap::Args;
 use leafbrdf::fit::{LeafRecord, ProspectOptions, ProspectOutcome, fit_prospect, write_records};
 use leafbrdf::output::file_name;
 use leafbrdf::spectra::{LeafSpectra, read_spectra};
+use leafbrdf_core::Normalization;
 use leafbrdf_fit::Interval;
 use leafbrdf_fit::hemispherical::{Free, default_free};
 use leafbrdf_prospect::{Error, LeafParams, Parameter, Prospect, table};
@@ -199,6 +200,27 @@ impl Options {
     }
 }
 
+/// Options that speak of directions or of a surface, which spectra do not have: refused rather than ignored.
+fn refuse_others(arguments: &Arguments) -> Result<(), Failure> {
+    let given = [
+        ("--max-theta-v", arguments.max_theta_v != 70.0),
+        ("--k-l-bounds", arguments.k_l_bounds != Range(0.01, 0.99)),
+        ("--n-bounds", arguments.n_bounds != Range(1.1, 5.0)),
+        ("--sigma-bounds", arguments.sigma_bounds != Range(0.01, 1.0)),
+        ("--start-n", arguments.start_n.is_some()),
+        ("--start-sigma", arguments.start_sigma.is_some()),
+        ("--starts", arguments.starts != 4),
+        ("--robust", arguments.robust),
+        ("--quantity", arguments.quantity.is_some()),
+        ("--azimuth", arguments.azimuth.is_some()),
+        ("--normalization", Normalization::from(arguments.normalization) != Normalization::Bousquet2005),
+    ];
+    match given.iter().find(|(_, given)| *given) {
+        Some((option, _)) => Err(Failure::Usage(format!("{option} has no meaning for --model prospect: leave it out"))),
+        None => Ok(()),
+    }
+}
+
 /// One leaf of the input, or why there is none.
 struct Input {
     name: String,
@@ -208,6 +230,7 @@ struct Input {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let options = arguments.prospect.options(arguments)?;
+    refuse_others(arguments)?;
     let pool = prepare(arguments)?;
     let bar = progress_bar("leaves");
     let leaves = read(arguments);
