@@ -5,9 +5,15 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::{env, fs};
 
+use leafbrdf_core::Portable;
+
 #[allow(dead_code, missing_docs)]
 #[path = "src/interface.rs"]
 mod interface;
+
+/// Sine and cosine of 40°, the cone above the leaf.
+const SIN_40: f64 = 0.642_787_609_686_539_4;
+const COS_40: f64 = 0.766_044_443_118_978;
 
 /// Bands of a complete table: 400–2500 nm at 1 nm.
 const BANDS: usize = 2101;
@@ -38,8 +44,10 @@ fn table(code: &mut String, name: &str, file: &str, header: &str, text: &str) {
             line.split(',').map(|cell| cell.parse().unwrap_or_else(|_| panic!("{file}, row {row}: {cell}"))).collect();
         let [wavelength, n, k @ ..] = values.as_slice() else { panic!("{file}, row {row}: too short") };
         assert_eq!(*wavelength, (400 + row) as f64, "{file}: wavelengths must be 400, 401, …");
-        let t_90 = interface::t_av(90.0, *n);
-        let computed = [interface::t_av(40.0, *n), t_90, t_90 / (n * n)];
+        // plain arithmetic: the same tables wherever they are built
+        let Portable(t_40) = interface::t_av_within(Portable(SIN_40), Portable(COS_40), Portable(*n));
+        let Portable(t_90) = interface::t_av_within(Portable(1.0), Portable(0.0), Portable(*n));
+        let computed = [t_40, t_90, t_90 / (n * n)];
         assert_eq!(computed.len() + k.len(), columns.len(), "{file}, row {row}: ragged");
         for (column, value) in columns.iter_mut().zip(computed.iter().chain(k)) {
             column.push(*value);

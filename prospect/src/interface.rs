@@ -30,14 +30,19 @@ pub fn t_av<T: Real>(cone_deg: T, n: T) -> T {
     if !(n >= T::ONE && cone_deg > T::ZERO && cone_deg <= T::lit(90.0)) {
         return T::lit(f64::NAN);
     }
+    let (sin_cone, cos_cone) = cone.sin_cos();
+    // cos 90° is 6e-17 in floating point; the integral starts at the horizon itself.
+    let cos_cone = if cone_deg < T::lit(90.0) { cos_cone } else { T::ZERO };
+    t_av_within(sin_cone, cos_cone, n)
+}
+
+/// [`t_av`] from the sine and cosine of the cone's half angle, for n ≥ 1.
+pub(crate) fn t_av_within<T: Real>(sin_cone: T, cos_cone: T, n: T) -> T {
     // m² = n² − 1; without a step in index there is nothing to reflect.
     let m2 = (n - T::ONE) * (n + T::ONE);
     if m2 <= T::ZERO {
         return T::ONE;
     }
-    let (sin_cone, cos_cone) = cone.sin_cos();
-    // cos 90° is 6e-17 in floating point; the integral starts at the horizon itself.
-    let cos_cone = if cone_deg < T::lit(90.0) { cos_cone } else { T::ZERO };
 
     // θ from 0 (cos θ = 1) to α. E = e^(−2w) is the s-amplitude (g−c)/(g+c): at normal incidence (n−1)/(n+1).
     // sinh(w(0) − w(α)) = sin²α / (cos 0 · g(α) + cos α · g(0)), g = √(m² + cos²θ): no difference of large numbers.
