@@ -20,11 +20,11 @@ pub(super) struct Misfit<'a, 'w, T, const P: usize> {
     pub workspace: &'w mut [T],
 }
 
-/// χ², its gradient by the parameters themselves, halved, and the normal matrix Σ ω ∂y/∂C_i ∂y/∂C_j.
+/// χ², its gradient by the parameters themselves, halved, and the normal matrix Σ ω ∂y/∂C_i ∂y/∂C_j below its diagonal (j ≤ i).
 struct Sums<T, const P: usize> {
     chi2: T,
     gradient: [T; P],
-    normal: [[T; P]; P],
+    lower: [[T; P]; P],
 }
 
 impl<T: Lanes, const P: usize> Misfit<'_, '_, T, P> {
@@ -43,7 +43,7 @@ impl<T: Lanes, const P: usize> Misfit<'_, '_, T, P> {
     }
 
     fn sums(&mut self, leaf: &LeafParams<T>) -> Result<Sums<T, P>, HemisphericalError> {
-        let mut sums = Sums { chi2: T::ZERO, gradient: [T::ZERO; P], normal: [[T::ZERO; P]; P] };
+        let mut sums = Sums { chi2: T::ZERO, gradient: [T::ZERO; P], lower: [[T::ZERO; P]; P] };
         let view = self.problem.model.view();
         let block = (self.workspace.len() / (2 + 2 * P)).clamp(1, BLOCK);
         let mut first = 0;
@@ -117,7 +117,7 @@ impl<T: Lanes, const P: usize> Objective<T, P> for Misfit<'_, '_, T, P> {
     fn evaluate(&mut self, x: &[T; P]) -> Evaluation<T, P> {
         let leaf = self.leaf(x);
         // Setting up has shown that the model accepts the box; an infinite cost would make the search step back.
-        let Ok(Sums { chi2, mut gradient, mut normal }) = self.sums(&leaf) else {
+        let Ok(Sums { chi2, mut gradient, lower }) = self.sums(&leaf) else {
             return Evaluation {
                 cost: T::MAX,
                 gradient: [T::ZERO; P],
@@ -126,10 +126,12 @@ impl<T: Lanes, const P: usize> Objective<T, P> for Misfit<'_, '_, T, P> {
             };
         };
         let slopes = self.slopes(x);
+        let mut normal = lower;
         for i in 0..P {
             gradient[i] = T::TWO * gradient[i] * slopes[i];
             for j in 0..P {
-                normal[i][j] = T::TWO * normal[i][j] * slopes[i] * slopes[j];
+                let product = if j <= i { lower[i][j] } else { lower[j][i] };
+                normal[i][j] = T::TWO * product * slopes[i] * slopes[j];
             }
         }
         Evaluation { cost: chi2, gradient, hessian: normal, gauss_newton: normal }
@@ -155,7 +157,8 @@ impl<T: Real, const P: usize> Sums<T, P> {
         for (modelled, measured) in modelled.iter_mut().zip(measured.values) {
             *modelled -= *measured;
         }
-        let bands = modelled.len();
+        // there is at least one band: said for the compiler, which then leaves no panic in the image
+        let bands = modelled.len().max(1);
         if let Some(weights) = measured.weights {
             let rows = core::iter::once(&mut *modelled).chain(derivatives.chunks_exact_mut(bands));
             for row in rows {
@@ -165,14 +168,11 @@ impl<T: Real, const P: usize> Sums<T, P> {
             }
         }
         self.chi2 += dot(modelled, modelled);
-        for (i, row) in derivatives.chunks_exact(bands).enumerate().take(P) {
-            self.gradient[i] += dot(row, modelled);
-            for (j, other) in derivatives.chunks_exact(bands).enumerate().take(i + 1) {
-                let product = dot(row, other);
-                self.normal[i][j] += product;
-                if i != j {
-                    self.normal[j][i] += product;
-                }
+        let rows = || derivatives.chunks_exact(bands);
+        for (i, ((row, gradient), products)) in rows().zip(&mut self.gradient).zip(&mut self.lower).enumerate() {
+            *gradient += dot(row, modelled);
+            for (product, other) in products.iter_mut().zip(rows()).take(i + 1) {
+                *product += dot(row, other);
             }
         }
     }

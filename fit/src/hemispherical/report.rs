@@ -34,8 +34,8 @@ pub struct HemisphericalFit<T, const P: usize> {
     /// Σ n (1 − ρ)/(1 + ρ) over the spectra, ρ ≥ 0 being the correlation of neighbouring residuals.
     ///
     /// The standard errors are those of a plain count times √(n_obs/n_effective): what is right for residuals that
-    /// forget exponentially (AR(1)) and a model that changes slowly from band to band. White noise leaves them alone; the smooth
-    /// misfit of a real leaf makes them five to thirty times larger. Equal to n_obs where the weights are absolute, or
+    /// forget exponentially (AR(1)) and a model that changes slowly from band to band. White noise leaves them alone; a smooth
+    /// misfit makes them many times larger. Equal to n_obs where the weights are absolute, or
     /// [`HemisphericalOptions::correlated_residuals`] is off.
     pub n_effective: T,
     /// Residuals of the reflectance.
