@@ -193,10 +193,10 @@ fn bands(arguments: &Arguments) -> Result<(), Failure> {
             .map(|leaf| LeafRow {
                 leaf: leaf.name.clone(),
                 file: leaf.file.clone(),
-                result: leaf.data.clone().and_then(|data| {
+                result: leaf.data.as_ref().map_err(Clone::clone).and_then(|data| {
                     let folder =
                         if several { arguments.output.join(file_name(&leaf.name)) } else { arguments.output.clone() };
-                    one_leaf(&data, leaf, arguments, &options, &folder, &bar)
+                    one_leaf(data, leaf, arguments, &options, &folder, &bar)
                 }),
             })
             .collect()
@@ -225,17 +225,18 @@ fn read(arguments: &Arguments) -> Vec<Input> {
         let file = path.display().to_string();
         match read_path(path, &options) {
             Ok(leaves) => inputs.extend(leaves.into_iter().map(|leaf| {
-                let folder = file_name(&leaf.name);
+                let name = leaf.name.clone();
+                let folder = file_name(&name);
                 let data = match places.get(&folder) {
                     Some(other) => Err(format!(
                         "{file}: leaf {} has the name of one in {other}, whose results it would overwrite: give one of them \
                          another file name or `# sample:`",
                         leaf.name
                     )),
-                    None => Ok(leaf.clone()),
+                    None => Ok(leaf),
                 };
                 places.entry(folder).or_insert_with(|| file.clone());
-                Input { name: leaf.name, file: file.clone(), data }
+                Input { name, file: file.clone(), data }
             })),
             Err(error) => {
                 let name = path.file_stem().map_or_else(|| file.clone(), |stem| stem.to_string_lossy().into_owned());
