@@ -31,8 +31,8 @@ fn k_l(wavelength: u32) -> f64 {
 /// A wide file of exact BRF (or BRDF) of a leaf with n = 1.5, σ = 0.25, six bands.
 fn wide(normalization: Normalization, quantity: &str) -> String {
     let mut text = format!("# species: simulated\n# quantity: {quantity}\n");
-    let angles: [(&str, fn(&(f64, f64, f64)) -> f64); 3] =
-        [("theta_s_deg", |d| d.0), ("theta_v_deg", |d| d.1), ("phi_v_deg", |d| d.2)];
+    type AngleOf = fn(&(f64, f64, f64)) -> f64;
+    let angles: [(&str, AngleOf); 3] = [("theta_s_deg", |d| d.0), ("theta_v_deg", |d| d.1), ("phi_v_deg", |d| d.2)];
     for (name, angle) in angles {
         text.push_str(name);
         DIRECTIONS.iter().for_each(|d| write!(text, ",{}", angle(d)).unwrap());

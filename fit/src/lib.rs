@@ -3,7 +3,7 @@
 // Small fixed matrices are indexed by row and column, as in the equations.
 #![allow(clippy::needless_range_loop)]
 
-#[cfg(feature = "std")]
+#[cfg(any(feature = "std", test))]
 extern crate std;
 
 pub mod band;
