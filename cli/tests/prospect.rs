@@ -320,6 +320,24 @@ fn the_prior_of_n_is_held_where_there_is_no_transmittance() {
     assert!((row[0] - 1.8).abs() < 1e-6 && (row[1] - 40.0).abs() < 1e-3, "{row:?}");
 }
 
+/// Up to 1000 nm, R alone hardly tells scattering from dry matter.
+#[test]
+fn parameters_that_are_only_known_together_are_named_with_the_remedy() {
+    let mut file = String::from("wavelength_nm,reflectance\n");
+    let spectrum = simulated(LEAVES, "400:1000:1", &["reflectance"]);
+    for (index, row) in spectrum.lines().filter_map(|line| line.strip_prefix("green,")).enumerate() {
+        let (nm, value) = row.split_once(',').unwrap();
+        // an error that is no leaf's: up and down from one wavelength to the next
+        let error = if index % 2 == 0 { 0.003 } else { -0.003 };
+        writeln!(file, "{nm},{}", value.parse::<f64>().unwrap() + error).unwrap();
+    }
+    let folder = Folder::new(&[("a.csv", &file)]);
+    let (status, message) = folder.fit(&["a.csv"], &[]);
+    assert_eq!(status, Some(0), "{message}");
+    assert!(message.contains("n_struct and cm (") && message.contains("--n-prior"), "{message}");
+    assert!(message.contains("known to half of its value at best: cm"), "{message}");
+}
+
 #[test]
 fn missing_values_sd_and_wavelengths_outside_are_counted() {
     let file = "wavelength_nm,reflectance,transmittance,reflectance_sd,transmittance_sd,remark\n\

@@ -53,16 +53,20 @@ impl ProspectOutcome {
         if !vague.is_empty() {
             warnings.push(format!("known to half of its value at best: {}", vague.join(", ")));
         }
+        let mut pairs = Vec::new();
         for (i, estimate) in self.fit.estimates.iter().enumerate() {
             for (other, correlation) in self.fit.estimates.iter().zip(&estimate.correlations).take(i) {
                 if let Some(correlation) = correlation.filter(|correlation| correlation.abs() > 0.95) {
-                    warnings.push(format!(
-                        "{} and {} lean on each other (correlation {correlation:.3}): their sum of effects is known, not each",
-                        other.parameter.name(),
-                        estimate.parameter.name()
-                    ));
+                    let (one, two) = (other.parameter.name(), estimate.parameter.name());
+                    pairs.push(format!("{one} and {two} ({correlation:.3})"));
                 }
             }
+        }
+        if !pairs.is_empty() {
+            let alone = self.measured[1].is_none() && self.fit.estimate(Parameter::NStruct).is_some();
+            let remedy = if alone { "; measure transmittance, or hold n_struct with --n-prior or --fix" } else { "" };
+            let pairs = pairs.join(", ");
+            warnings.push(format!("known together rather than each (correlation above 0.95): {pairs}{remedy}"));
         }
         if let Some(second) = self.fit.second.filter(|second| second.chi2 < 1.1 * self.fit.chi2) {
             let leaf = second.leaf;
