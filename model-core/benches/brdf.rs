@@ -42,7 +42,7 @@ fn batch<T: Real>(c: &mut Criterion, name: &str) {
         terms.iter().map(|t| t.tan2_alpha).collect(),
         terms.iter().map(|t| t.weight).collect(),
     ];
-    let mut out = vec![T::ZERO; BATCH];
+    let mut out = [T::ZERO; BATCH];
     let mut group = c.benchmark_group(format!("4,096 evaluations, {name}"));
     group.throughput(Throughput::Elements(BATCH as u64));
     group.bench_function("brdf from direction terms", |b| {
