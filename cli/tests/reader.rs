@@ -437,11 +437,13 @@ fn the_examples_of_the_documentation_are_read() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/formats.md");
     let text = std::fs::read_to_string(path).unwrap();
     let examples: Vec<&str> = text.split("```csv\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
-    let [wide, long, points] = examples.as_slice() else { panic!("three examples expected") };
+    let [wide, long, spectra, points] = examples.as_slice() else { panic!("four examples expected") };
     assert_eq!(one(wide).counts().usable, 6);
     let leaves = read(long).unwrap();
     assert_eq!(leaves.iter().map(|leaf| leaf.name.as_str()).collect::<Vec<_>>(), ["upper", "lower"]);
     assert!(leaves[1].sd.is_some());
+    let spectra = leafbrdf::spectra::spectra_from_bytes("spectra.csv", spectra.as_bytes()).unwrap();
+    assert_eq!(spectra.iter().map(|leaf| leaf.wavelengths_nm.len()).collect::<Vec<_>>(), [2, 1]);
     let points = leafbrdf::points::Points::from_bytes("points.csv", points.as_bytes()).unwrap();
     assert_eq!(points.number(1, points.require("sigma").unwrap()), Ok(0.29));
     // The message that the document shows.

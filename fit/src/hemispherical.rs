@@ -16,14 +16,14 @@
 //! # What reflectance alone can tell
 //!
 //! Without noise, everything: every parameter of every version comes back from 400–2500 nm. With white noise of 0.005 (PROSPECT-D,
-//! median standard errors over 300 random leaves, R alone against R and T; `examples/hemispherical.rs`):
+//! median standard errors over 1,000 random leaves, R alone against R and T; `examples/hemispherical.rs`):
 //!
 //! | | N | C_ab | C_car | C_ant | C_brown | C_w | C_m | correlation N, C_m |
 //! |---|---|---|---|---|---|---|---|---|
 //! | 400–2500 nm, R and T | 0.001 | 0.3 | 0.5 | 0.2 | 0.005 | 5e-5 | 5e-5 | 0.01 |
 //! | 400–2500 nm, R | 0.006 | 0.4 | 0.7 | 0.2 | 0.007 | 7e-5 | 2e-4 | 0.93 |
 //! | 400–1000 nm, R and T | 0.002 | 0.3 | 0.5 | 0.2 | 0.008 | 0.001 | 2e-4 | 0.02 |
-//! | 400–1000 nm, R | 0.3 | 5 | 2 | 0.9 | 0.04 | 0.003 | 0.007 | 1.00 |
+//! | 400–1000 nm, R | 0.3 | 4 | 2 | 1 | 0.04 | 0.003 | 0.007 | 1.00 |
 //!
 //! Without the short-wave infrared, R alone cannot tell scattering from dry matter: N and C_m lean on each other and C_m has an error as
 //! large as itself; up to 700 nm hardly anything is known in every fifth leaf, which [`Identifiability`](crate::Identifiability) says
