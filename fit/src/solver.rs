@@ -86,10 +86,13 @@ pub fn minimize<T: Real, const P: usize, O: Objective<T, P>>(
     start: &[T; P],
     options: &SolverOptions<T, P>,
 ) -> Minimum<T, P> {
-    let asked: [T; P] = core::array::from_fn(|i| bounds[i].clip(start[i]));
-    let mut x: [T; P] = core::array::from_fn(|i| bounds[i].inside(start[i], T::lit(1e-3)));
+    let (mut asked, mut x) = (*start, *start);
+    for ((asked, x), bound) in asked.iter_mut().zip(&mut x).zip(bounds) {
+        *asked = bound.clip(*asked);
+        *x = bound.inside(*x, T::lit(1e-3));
+    }
     // a start at a bound is looked at as it is, and left only for something better
-    let moved = (0..P).any(|i| x[i] != asked[i]);
+    let moved = x.iter().zip(&asked).any(|(x, asked)| x != asked);
     let at_start = if moved { Some(objective.evaluate(&asked)) } else { None };
     let mut here = objective.evaluate(&x);
     let mut lambda = T::ZERO;
