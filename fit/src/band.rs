@@ -1,7 +1,7 @@
 //! One wavelength: min over k_L, n, σ of χ² = Σ ω (BRDF_measured − k_L/π − BRDF_spec)² (Eq. 11).
 //!
-//! k_L enters linearly and is eliminated exactly, bounds included. What is left is a function of (F₀, ln σ), F₀ = F at normal
-//! incidence: in these two the lobe is nearly linear. Its global minimum comes from a coarse scan of the whole box
+//! k_L enters linearly and is eliminated exactly, bounds included. What is left is a function of (ln F₀, ln σ), F₀ = F at normal
+//! incidence: in these two the valley of a lobe that is seen from its flank is straight. Its global minimum comes from a coarse scan of the whole box
 //! ([`scan`]), every valley of which starts a Newton search with exact second derivatives (`profile.rs`).
 
 mod profile;

@@ -1,4 +1,4 @@
-//! χ² with k_L eliminated, as a function of (F₀, ln σ), with exact first and second derivatives.
+//! χ² with k_L eliminated, as a function of (ln F₀, ln σ), with exact first and second derivatives.
 
 use leafbrdf_core::{Dielectric, DirectionTerms, Real};
 
@@ -111,7 +111,7 @@ pub(super) struct Point<T> {
     pub s_s: [T; 3],
 }
 
-/// χ²(F₀, ln σ) of one band.
+/// χ²(ln F₀, ln σ) of one band.
 pub(super) struct Profile<'a, T, const L: usize> {
     pub directions: Directions<'a, T>,
     pub band: Band<'a, T>,
@@ -123,7 +123,7 @@ pub(super) struct Profile<'a, T, const L: usize> {
 }
 
 impl<T: Real, const L: usize> Profile<'_, T, L> {
-    /// The box in (F₀, ln σ).
+    /// The box in (ln F₀, ln σ).
     #[inline(always)]
     pub fn box_of(bounds: &BandBounds<T>) -> [Interval<T>; 2] {
         [

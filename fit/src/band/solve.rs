@@ -148,7 +148,7 @@ impl<'a, T: Real, const L: usize> BandSolver<'a, T, L> {
         let options = SolverOptions {
             tolerance: self.options.tolerance,
             max_iterations: self.options.max_iterations,
-            // F₀ may double or halve at most several times over its range; σ by a factor of 2
+            // F₀ changes by a factor of e at most, σ by a factor of 2
             max_step: [T::ONE, T::lit(0.7)],
         };
         let x = [f0_from_n(bounds.n.clip(start.n)).ln(), bounds.sigma.clip(start.sigma).ln()];
