@@ -201,7 +201,7 @@ impl<T: Real, const L: usize> Objective<T, 2> for Profile<'_, T, L> {
         let (n1, n2) = (slope * f0, (curvature * f0 + slope) * f0);
         let sigma = x[1].exp();
         let point = self.at(self.bounds.n.clip(n), self.bounds.sigma.clip(sigma));
-        // chain rule: n(F₀), σ(ln σ) with σ' = σ'' = σ
+        // chain rule: n(ln F₀), σ(ln σ) with σ' = σ'' = σ
         let change =
             |m: &[T; 3]| [[m[0] * n1.squared(), m[1] * n1 * sigma], [m[1] * n1 * sigma, m[2] * sigma.squared()]];
         let mut hessian = change(&point.hessian);
