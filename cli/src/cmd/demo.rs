@@ -16,7 +16,7 @@ use super::Failure;
 #[derive(Args)]
 #[command(after_help = "Examples:
   leafbrdf demo
-  leafbrdf demo -o /tmp/leafbrdf-demo")]
+  leafbrdf demo -o study")]
 pub struct Arguments {
     /// Folder for the files; made where it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "leafbrdf-demo")]
