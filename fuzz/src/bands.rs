@@ -174,7 +174,11 @@ fn whole_leaf(case: &Case) {
         assert!(result.is_none() || counted >= 3, "a fit of {counted} values");
         assert!(result.is_some() || counted < 3 || !case.is_moderate(1e7), "no fit of {counted} values");
         let Some(fit) = result else { continue };
-        assert_eq!(fit.n_obs, counted);
+        // Huber's weight of a far outlier may underflow
+        assert!(
+            fit.n_obs == counted || (case.options.robust && fit.n_obs < counted),
+            "{counted} values count: {fit:?}"
+        );
         inside(fit, &case.options.band.bounds);
         // Huber's loss has weights of its own
         if !case.options.robust && case.is_moderate(1e7) {

@@ -13,6 +13,10 @@ fn ulps_f64(value: f64, exact: f64) -> f64 {
     (value - exact).abs() / (exact.abs() * f64::EPSILON)
 }
 fn ulps_f32(value: f32, exact: f64) -> f64 {
+    // ln 1 = 0 is drawn once in about a hundred runs: 0/0 is no error
+    if f64::from(value) == exact {
+        return 0.0;
+    }
     (f64::from(value) - exact).abs() / (exact.abs() * f64::from(f32::EPSILON))
 }
 
