@@ -2,13 +2,34 @@
 
 use crate::Real;
 
+mod ggx;
+pub use ggx::{Ggx, ggx, ggx_log_slopes};
+
+/// A facet density and its exact derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FacetSlopes<T> {
+    /// D, sr⁻¹.
+    pub value: T,
+    /// ∂D/∂σ, sr⁻¹.
+    pub d_sigma: T,
+    /// ∂D/∂tan²α, sr⁻¹.
+    pub d_tan2_alpha: T,
+}
+
 /// A distribution of facet slopes: the density D(α; σ) of facet normals, in sr⁻¹, with ∫ D cosα dΩ = 1.
 pub trait Facets<T: Real>: Copy {
     /// D(α; σ).
     fn density(self, tan2_alpha: T, sigma: T) -> T;
 
+    /// D with ∂D/∂σ and ∂D/∂tan²α.
+    fn density_with_slopes(self, tan2_alpha: T, sigma: T) -> FacetSlopes<T>;
+
     /// D and ∂D/∂σ.
-    fn density_with_slope(self, tan2_alpha: T, sigma: T) -> (T, T);
+    #[inline(always)]
+    fn density_with_slope(self, tan2_alpha: T, sigma: T) -> (T, T) {
+        let FacetSlopes { value, d_sigma, .. } = self.density_with_slopes(tan2_alpha, sigma);
+        (value, d_sigma)
+    }
 }
 
 /// The paper's distribution (Eq. 9): slopes are Gaussian, D ∝ exp(−tan²α/σ²)/(σ² cos⁴α).
@@ -62,10 +83,18 @@ impl<T: Real> Facets<T> for Beckmann {
     }
 
     #[inline(always)]
-    fn density_with_slope(self, tan2_alpha: T, sigma: T) -> (T, T) {
-        let density = beckmann(tan2_alpha, sigma);
+    fn density_with_slopes(self, tan2_alpha: T, sigma: T) -> FacetSlopes<T> {
+        let value = beckmann(tan2_alpha, sigma);
+        // Far in the tail D underflows to 0 before the logarithmic slopes overflow, and 0 · ∞ would be NaN.
+        if !(value > T::ZERO) {
+            return FacetSlopes { value, d_sigma: T::ZERO, d_tan2_alpha: T::ZERO };
+        }
         let (log_slope, _) = beckmann_log_slopes(tan2_alpha, sigma);
-        // Far in the tail D underflows to 0 before the logarithmic slope overflows, and 0 · ∞ would be NaN.
-        (density, if density > T::ZERO { density * log_slope } else { T::ZERO })
+        FacetSlopes {
+            value,
+            d_sigma: value * log_slope,
+            // ∂ ln D/∂tan²α
+            d_tan2_alpha: value * (T::TWO / (T::ONE + tan2_alpha) - T::ONE / sigma.squared()),
+        }
     }
 }

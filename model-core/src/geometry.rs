@@ -2,6 +2,9 @@
 
 use crate::{Angle, DomainError, Real};
 
+mod tilt;
+pub use tilt::{DirectionVectors, Tilt, TiltSlopes, Tilted};
+
 /// One pair of directions: source and view, as the equations need them.
 ///
 /// Built once for each direction and shared by all wavelengths. Swapping source and view gives the same numbers to the
@@ -122,6 +125,12 @@ impl<T: Real> Geometry<T> {
     #[inline(always)]
     pub fn cos_theta_a(&self) -> T {
         self.cos_theta_a
+    }
+
+    /// cos 2θ_a = s·v: cosine of the phase angle between source and view.
+    #[inline(always)]
+    pub fn cos_2_theta_a(&self) -> T {
+        T::ONE - T::TWO * self.sin2_theta_a
     }
 
     /// tan²α: squared tangent of the tilt of the facet that reflects from source to view.

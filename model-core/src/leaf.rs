@@ -6,6 +6,9 @@ use crate::fresnel::{Dielectric, Index};
 use crate::masking::{Masking, VCavity};
 use crate::{DomainError, Geometry, Real, Surface};
 
+mod tilted;
+pub use tilted::{TiltedDiffuseGradient, TiltedLeafGradient};
+
 /// BRDF of a leaf and its exact derivatives with respect to the three parameters of §4.2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeafGradient<T> {
@@ -67,6 +70,11 @@ impl<T: Real, I: Index<T>, D: Facets<T>, G: Masking<T>, L: Diffuse<T>> Leaf<T, I
     /// The surface.
     pub fn surface(&self) -> &Surface<T, I, D, G> {
         &self.surface
+    }
+
+    /// The shape of the diffuse term.
+    pub fn diffuse(&self) -> L {
+        self.diffuse
     }
 
     /// BRDF_diff in sr⁻¹ (Eq. 4).

@@ -18,14 +18,17 @@ mod specular;
 
 pub use angle::Angle;
 pub use dhrf::{DhrfGradient, Grade, Illumination};
-pub use diffuse::{Diffuse, Lambert};
+pub use diffuse::{Diffuse, DiffuseSlopes, Lambert, P1};
 pub use error::DomainError;
-pub use facet::{Beckmann, Facets};
+pub use facet::{Beckmann, FacetSlopes, Facets, Ggx};
 pub use fresnel::{Absorbing, Dielectric, Index, Polarized};
-pub use geometry::{DirectionCosines, Geometry};
-pub use leaf::{Leaf, LeafGradient};
-pub use masking::{Masking, VCavity};
+pub use geometry::{DirectionCosines, DirectionVectors, Geometry, Tilt, TiltSlopes, Tilted};
+pub use leaf::{Leaf, LeafGradient, TiltedDiffuseGradient, TiltedLeafGradient};
+pub use masking::{Masking, MaskingSlopes, Smith, VCavity};
 #[cfg(any(feature = "std", feature = "libm"))]
 pub use real::Portable;
 pub use real::Real;
-pub use specular::{DirectionTerms, Normalization, SpecularGradient, SpecularHessian, Surface};
+pub use specular::{
+    DirectionTerms, GgxSurface, GgxTerms, Normalization, SpecularGradient, SpecularHessian, Surface,
+    TiltedSpecularGradient,
+};

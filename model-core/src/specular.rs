@@ -5,6 +5,11 @@ use crate::fresnel::{Absorbing, Dielectric, Index};
 use crate::masking::{Masking, VCavity, v_cavity};
 use crate::{DhrfGradient, DomainError, Geometry, Grade, Illumination, Real};
 
+mod ggx;
+mod tilted;
+pub use ggx::{GgxSurface, GgxTerms};
+pub use tilted::TiltedSpecularGradient;
+
 /// The constant K of Eq. 10, BRDF_spec = F G exp(−tan²α/σ²) / (K cosθ_s cosθ_v σ² cos⁴α): two conventions exist.
 ///
 /// Eqs 5, 6 and 9 of the paper give 4π; Eq. 10 as printed has 2π², so its lobe is smaller by 2/π = 0.6366, and the paper's
