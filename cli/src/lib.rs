@@ -2,6 +2,7 @@
 
 pub mod demo;
 pub mod fit;
+pub mod hemisphere;
 pub mod measurement;
 pub mod output;
 pub mod points;
