@@ -31,6 +31,16 @@ pub enum Error {
         /// The ratio.
         value: f64,
     },
+    /// A surface's refractive index below 1, or not a number: for example a coefficient on the tabulated index that is too small.
+    SurfaceIndex {
+        /// The index.
+        value: f64,
+    },
+    /// The share of the pigments in the upper stack of a two-layer leaf is not between 0 and 1.
+    PigmentShare {
+        /// The share.
+        value: f64,
+    },
     /// A slice has the wrong length.
     Length {
         /// What it is for.
@@ -84,6 +94,12 @@ impl fmt::Display for Error {
             Error::CarGivenAndTied => f.write_str("car is given and also tied to cab: set it to 0, or untie it"),
             Error::CarPerCab { value } => {
                 write!(f, "the ratio of car to cab is {value}: expected a finite number ≥ 0 (0.25 is usual)")
+            }
+            Error::SurfaceIndex { value } => {
+                write!(f, "the refractive index of the surface is {value}: expected a number from 1 to 10000")
+            }
+            Error::PigmentShare { value } => {
+                write!(f, "the upper stack's share of the pigments is {value}: expected a number from 0 to 1")
             }
             Error::Length { slice, expected, found } => {
                 write!(f, "the slice for {slice} has {found} elements, expected {expected}")

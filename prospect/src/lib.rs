@@ -5,6 +5,7 @@
 extern crate std;
 
 mod absorption;
+mod coupling;
 mod error;
 pub mod expint;
 pub mod interface;
@@ -17,6 +18,7 @@ pub mod sensor;
 mod stack;
 pub mod table;
 
+pub use coupling::{CoupledBand, CoupledLeaf, Coupling, DiffuseTerm, Link, SurfaceIndex};
 pub use error::Error;
 pub use lanes::Lanes;
 pub use model::{Jacobian, Prospect, plates, plates_with_slopes};

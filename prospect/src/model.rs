@@ -79,6 +79,12 @@ impl<'a, T: Real> Prospect<'a, T> {
     ///
     /// As [`Prospect::spectrum`]; [`Error::Length`] for a band beyond the table.
     pub fn band(&self, leaf: &LeafParams<T>, band: usize) -> Result<Optics<T>, Error> {
+        let (faces, k, n_struct) = self.plate(leaf, band)?;
+        Ok(plates(faces, k, n_struct))
+    }
+
+    /// What the leaf is made of in one band: the faces of a plate, the absorption coefficient K of one layer, and N.
+    pub(crate) fn plate(&self, leaf: &LeafParams<T>, band: usize) -> Result<(Interface<T>, T, T), Error> {
         let layer = self.rules.layer(self.view.version(), leaf)?;
         let faces = self.view.interface(band).ok_or(Error::Length {
             slice: "bands",
@@ -89,7 +95,21 @@ impl<'a, T: Real> Prospect<'a, T> {
         for (column, &content) in self.view.coefficients().zip(&layer.contents) {
             k += content * column.get(band).copied().unwrap_or(T::ZERO);
         }
-        Ok(plates(faces, k, leaf.n_struct))
+        Ok((faces, k, leaf.n_struct))
+    }
+
+    /// Slopes by every parameter of [`Parameter::ALL`] of what has slopes `by_k` and `by_n` with respect to K and N in one band.
+    pub(crate) fn chain(&self, band: usize, k: T, n_struct: T, by_k: T, by_n: T) -> [T; Parameter::ALL.len()] {
+        let coefficient = |column| self.view.coefficient(column).get(band).copied().unwrap_or(T::ZERO);
+        Parameter::ALL.map(|parameter| match self.rules.action(self.view.version(), parameter) {
+            // K = S/N with S fixed: dK/dN = −K/N
+            Action::Structure => by_n - by_k * k / n_struct,
+            Action::Content { own, tied } => {
+                let tied = tied.map_or(T::ZERO, |(column, ratio)| ratio * coefficient(column));
+                by_k * (coefficient(own) + tied) / n_struct
+            }
+            Action::Nothing => T::ZERO,
+        })
     }
 }
 
