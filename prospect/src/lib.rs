@@ -17,6 +17,7 @@ mod plate;
 pub mod sensor;
 mod stack;
 pub mod table;
+mod two_layer;
 
 pub use coupling::{CoupledBand, CoupledLeaf, Coupling, DiffuseTerm, Link, SurfaceIndex};
 pub use error::Error;
@@ -25,3 +26,4 @@ pub use model::{Jacobian, Prospect, plates, plates_with_slopes};
 pub use params::{LeafParams, Parameter, Version};
 pub use plate::Interface;
 pub use stack::{Optics, Slopes};
+pub use two_layer::TwoLayer;

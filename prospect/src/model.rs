@@ -98,6 +98,24 @@ impl<'a, T: Real> Prospect<'a, T> {
         Ok((faces, k, leaf.n_struct))
     }
 
+    /// How much of a constituent the leaf holds, ties included.
+    pub(crate) fn content(&self, leaf: &LeafParams<T>, constituent: Parameter) -> T {
+        match (constituent, self.rules.car_per_cab) {
+            (Parameter::Car, Some(ratio)) => ratio * leaf.cab,
+            _ => leaf.get(constituent),
+        }
+    }
+
+    /// d(content of a constituent)/d(parameter): 1, 0, or the ratio of a tie.
+    pub(crate) fn content_rate(&self, constituent: Parameter, parameter: Parameter) -> T {
+        match (constituent, parameter, self.rules.car_per_cab) {
+            (Parameter::Car, Parameter::Car, Some(_)) => T::ZERO,
+            (Parameter::Car, Parameter::Cab, Some(ratio)) => ratio,
+            _ if constituent == parameter => T::ONE,
+            _ => T::ZERO,
+        }
+    }
+
     /// Slopes by every parameter of [`Parameter::ALL`] of what has slopes `by_k` and `by_n` with respect to K and N in one band.
     pub(crate) fn chain(&self, band: usize, k: T, n_struct: T, by_k: T, by_n: T) -> [T; Parameter::ALL.len()] {
         let coefficient = |column| self.view.coefficient(column).get(band).copied().unwrap_or(T::ZERO);

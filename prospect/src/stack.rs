@@ -174,12 +174,7 @@ pub(crate) fn slopes<T: Real>(
 
     // ∂/∂K at constant N. With e = D dL/dK:  Q' = V e − Q t'/t,  (cosh ML)' = M Q e,  V = (M cosh ML − 2t cosh L · Q)/D².
     let e = -(slope.log_t * pair.z + T::TWO * r * slope.r);
-    let b = (T::ONE - r) * (T::ONE + r) + t.squared();
-    // V loses its digits as D → 0; there it is M B/(4t³) Σ k aₖ q^(k−1), q = sinh²L.
-    let sinh2_l = (pair.d * pair.half_t).squared();
-    let v_series = m * b * T::TWO * pair.half_t * pair.half_t.squared() * y * series.sum(sinh2_l);
-    let v_plain = (m * cosh - b * q) * d_inverse.squared();
-    let v = if sinh2_l < series.largest { v_series } else { v_plain };
+    let v = series.v(pair, decay, plate, m, q, cosh, d_inverse);
     let q_k = v * e - q * slope.log_t;
     let z_k = -(T::TWO * (r * slope.r + t.squared() * slope.log_t));
     let h_k = (z_k * q + pair.z * q_k + m * q * e) * h_inverse;
@@ -187,6 +182,47 @@ pub(crate) fn slopes<T: Real>(
     let dr_dk =
         slope.r_top + T::TWO * t * plate.t_top * h_inverse * (slope.r * q + r * v * e + r * q * (slope.log_t - h_k));
     Slopes { dr_dk, dt_dk, dr_dn, dt_dn }
+}
+
+/// A pile of equal plates under isotropic light, not joined with another upper plate: reflectance, transmittance and slopes.
+#[derive(Clone, Copy)]
+pub(crate) struct Pile<T> {
+    pub r: T,
+    pub t: T,
+    pub slopes: Slopes<T>,
+}
+
+/// `m` ≥ 0 equal plates: R = 2 r Q/G, T = 1/G. `plate` is one whose two faces are alike.
+#[inline(always)]
+pub(crate) fn pile<T: Real>(plate: &Plate<T>, slope: PlateSlope<T>, m: T, series: &SlopeSeries<T>) -> Pile<T> {
+    let Plate { r, t, .. } = *plate;
+    let pair = Pair::new(plate);
+    let decay = Decay::new(Decay::rate(pair.growth), m);
+    let y = decay.y;
+    let d_inverse = T::ONE / pair.d;
+    // y Q, y cosh ML, y G and its reciprocal
+    let q = T::HALF * decay.odd() * d_inverse;
+    let cosh = T::HALF * decay.even();
+    let g = (T::ONE - t) * (T::ONE + t) + r.squared();
+    let inverse = T::ONE / (g * q + cosh);
+    let reflectance = T::TWO * r * q * inverse;
+    let transmittance = y * inverse;
+
+    // by m at constant K, as in `slopes`
+    let l_by_d = decay.l * d_inverse;
+    let g_m = g * l_by_d * cosh + decay.l * pair.d * q;
+    let dr_dn = T::TWO * r * l_by_d * (y * inverse).squared();
+    let dt_dn = -(transmittance * g_m * inverse);
+
+    // by K at constant m
+    let e = -(slope.log_t * pair.z + T::TWO * r * slope.r);
+    let v = series.v(&pair, &decay, plate, m, q, cosh, d_inverse);
+    let q_k = v * e - q * slope.log_t;
+    let prefactor_k = T::TWO * (r * slope.r - t.squared() * slope.log_t);
+    let g_k = (prefactor_k * q + g * q_k + m * q * e) * inverse;
+    let dt_dk = -(transmittance * g_k);
+    let dr_dk = T::TWO * inverse * (slope.r * q + r * (q_k - q * g_k));
+    Pile { r: reflectance, t: transmittance, slopes: Slopes { dr_dk, dt_dk, dr_dn, dt_dn } }
 }
 
 /// Terms kept of the series of V.
@@ -215,6 +251,19 @@ impl<T: Real> SlopeSeries<T> {
             *term = a * k;
         }
         SlopeSeries { terms, largest: T::lit(0.01) / (T::ONE + m.squared()) }
+    }
+
+    /// y V, from y Q, y cosh ML and 1/D.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    fn v(&self, pair: &Pair<T>, decay: &Decay<T>, plate: &Plate<T>, m: T, q: T, cosh: T, d_inverse: T) -> T {
+        let Plate { r, t, .. } = *plate;
+        let b = (T::ONE - r) * (T::ONE + r) + t.squared();
+        // V loses its digits as D → 0; there it is M B/(4t³) Σ k aₖ q^(k−1), q = sinh²L.
+        let sinh2_l = (pair.d * pair.half_t).squared();
+        let v_series = m * b * T::TWO * pair.half_t * pair.half_t.squared() * decay.y * self.sum(sinh2_l);
+        let v_plain = (m * cosh - b * q) * d_inverse.squared();
+        if sinh2_l < self.largest { v_series } else { v_plain }
     }
 
     #[inline(always)]
