@@ -4,7 +4,7 @@
 //! incidence: in these two the valley of a lobe that is seen from its flank is straight. Its global minimum comes from a coarse scan of the whole box
 //! ([`scan`]), every valley of which starts a Newton search with exact second derivatives (`profile.rs`).
 
-mod profile;
+pub(crate) mod profile;
 mod report;
 pub mod scan;
 mod solve;

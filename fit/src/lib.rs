@@ -14,6 +14,7 @@ pub mod hemispherical;
 mod leaf_bands;
 mod linear;
 pub mod solver;
+pub mod surface;
 
 pub use band::{Band, BandFit, BandOptions, BandSolver, Directions, Identifiability, Start, Valley};
 pub use bounds::{AtBound, BandBounds, Interval};

@@ -8,13 +8,13 @@ use crate::solver::{Evaluation, Objective};
 
 /// F₀ = ((n − 1)/(n + 1))², the reflectance at normal incidence.
 #[inline(always)]
-pub(super) fn f0_from_n<T: Real>(n: T) -> T {
+pub(crate) fn f0_from_n<T: Real>(n: T) -> T {
     ((n - T::ONE) / (n + T::ONE)).squared()
 }
 
 /// n = (1 + √F₀)/(1 − √F₀), with dn/dF₀ and d²n/dF₀².
 #[inline(always)]
-pub(super) fn n_from_f0<T: Real>(f0: T) -> [T; 3] {
+pub(crate) fn n_from_f0<T: Real>(f0: T) -> [T; 3] {
     let rho = f0.sqrt();
     let rest = T::ONE - rho;
     let inverse = T::ONE / (rho * rest.squared());
