@@ -1,0 +1,260 @@
+//! The inversion of one wavelength: k_L, n and sigma with standard errors.
+
+use core::mem::MaybeUninit;
+
+use leafbrdf_fit::{
+    AtBound, Band, BandBounds, BandFit, BandOptions, BandSolver, Directions, FitError, Interval, Start,
+};
+
+use crate::border::{slice, slice_mut};
+use crate::direction::lb_direction;
+use crate::number::{Number, float, number};
+use crate::status::{LB_ERR_BOUNDS, LB_ERR_COUNT, LB_ERR_DATA, LB_ERR_TOO_FEW, LB_ERR_WORKSPACE, LB_OK, lb_status};
+use crate::surface::give;
+
+/// Numbers of workspace that lb_fit_band and lb_fit_bands take for each direction.
+pub const LB_BAND_WORKSPACE_PER_DIRECTION: u32 = 4;
+
+/// Bit of lb_band.at_bound: k_lambert is at its lower bound and held there.
+pub const LB_AT_LOWER_K_LAMBERT: u32 = 1;
+/// Bit of lb_band.at_bound: k_lambert is at its upper bound.
+pub const LB_AT_UPPER_K_LAMBERT: u32 = 2;
+/// Bit of lb_band.at_bound: n is at its lower bound.
+pub const LB_AT_LOWER_N: u32 = 4;
+/// Bit of lb_band.at_bound: n is at its upper bound.
+pub const LB_AT_UPPER_N: u32 = 8;
+/// Bit of lb_band.at_bound: sigma is at its lower bound.
+pub const LB_AT_LOWER_SIGMA: u32 = 16;
+/// Bit of lb_band.at_bound: sigma is at its upper bound.
+pub const LB_AT_UPPER_SIGMA: u32 = 32;
+
+/// Where the three parameters are sought: -1 <= k_lambert <= 2, 1.0001 <= n <= 100, 1e-4 <= sigma <= 10, each lower < upper.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct lb_bounds {
+    /// Least k_L; 0.01 in the paper's Table 3.
+    pub k_lambert_lower: f32,
+    /// Greatest k_L; 0.99.
+    pub k_lambert_upper: f32,
+    /// Least n; 1.1.
+    pub n_lower: f32,
+    /// Greatest n; 5.
+    pub n_upper: f32,
+    /// Least sigma; 0.01.
+    pub sigma_lower: f32,
+    /// Greatest sigma; 1.
+    pub sigma_upper: f32,
+}
+
+/// What the inversion of one wavelength finds.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct lb_band {
+    /// Lambert coefficient k_L.
+    pub k_lambert: f32,
+    /// Refractive index of the surface, under the normalization of the directions.
+    pub n: f32,
+    /// Roughness of the surface.
+    pub sigma: f32,
+    /// Standard error of k_L; NaN where k_L is at a bound or the data do not determine it.
+    pub k_lambert_se: f32,
+    /// Standard error of n; NaN as above.
+    pub n_se: f32,
+    /// Standard error of sigma; NaN as above.
+    pub sigma_se: f32,
+    /// Root mean square of measured - modelled BRDF, sr^-1 where every weight is 1.
+    pub rmse: f32,
+    /// Values that counted (weight > 0).
+    pub n_obs: u32,
+    /// Which parameters sit at a bound: LB_AT_... added up.
+    pub at_bound: u32,
+    /// Steps of the search, over all its starts.
+    pub iterations: u32,
+    /// 1 where the search arrived at a minimum, 0 where it ran out of steps.
+    pub converged: u32,
+    /// LB_OK, or why this band has no result (then nothing else in this struct is meaningful).
+    pub status: lb_status,
+}
+
+impl lb_band {
+    fn new(fit: &BandFit<Number>) -> Self {
+        let [k_lambert, n, sigma] = fit.parameters.map(float);
+        let [k_lambert_se, n_se, sigma_se] = fit.standard_errors.map(|error| error.map_or(f32::NAN, float));
+        let [k_at, n_at, sigma_at] = fit.at_bound;
+        let bits = |at, lower, upper| match at {
+            AtBound::Free => 0,
+            AtBound::Lower => lower,
+            AtBound::Upper => upper,
+        };
+        lb_band {
+            k_lambert,
+            n,
+            sigma,
+            k_lambert_se,
+            n_se,
+            sigma_se,
+            rmse: float(fit.rmse()),
+            n_obs: fit.n_obs as u32,
+            at_bound: bits(k_at, LB_AT_LOWER_K_LAMBERT, LB_AT_UPPER_K_LAMBERT)
+                | bits(n_at, LB_AT_LOWER_N, LB_AT_UPPER_N)
+                | bits(sigma_at, LB_AT_LOWER_SIGMA, LB_AT_UPPER_SIGMA),
+            iterations: fit.iterations,
+            converged: u32::from(fit.termination.converged()),
+            status: LB_OK,
+        }
+    }
+
+    /// A band without a result.
+    fn without(status: lb_status) -> Self {
+        lb_band {
+            k_lambert: f32::NAN,
+            n: f32::NAN,
+            sigma: f32::NAN,
+            k_lambert_se: f32::NAN,
+            n_se: f32::NAN,
+            sigma_se: f32::NAN,
+            rmse: f32::NAN,
+            n_obs: 0,
+            at_bound: 0,
+            iterations: 0,
+            converged: 0,
+            status,
+        }
+    }
+}
+
+/// Inverts the measurements of one wavelength for k_L, n and sigma: least squares inside bounds (Eq. 11).
+///
+/// - directions: `count` prepared directions.
+/// - brdf: measured BRDF, sr^-1, one value a direction.
+/// - weight: one a value, 0 for missing ones; null: every value counts once.
+/// - bounds: null for those of the paper's Table 3.
+/// - workspace, workspace_len: LB_BAND_WORKSPACE_PER_DIRECTION numbers a direction.
+///
+/// LB_ERR_TOO_FEW where fewer than 3 values count. A search that stops early is an answer: see `converged`.
+///
+/// # Safety
+/// `directions`, `brdf` and `weight` point to `count` elements, `workspace` to `workspace_len` values that nothing else uses
+/// during the call; or they are null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lb_fit_band(
+    directions: *const lb_direction,
+    brdf: *const f32,
+    weight: *const f32,
+    count: u32,
+    bounds: Option<&lb_bounds>,
+    workspace: *mut f32,
+    workspace_len: u32,
+    band: Option<&mut MaybeUninit<lb_band>>,
+) -> lb_status {
+    let Some(out) = band else { return crate::status::LB_ERR_NULL };
+    let fit = || {
+        // SAFETY: the caller's promise about pointers and lengths
+        let (directions, brdf, workspace) =
+            unsafe { (slice(directions, count)?, slice(brdf, count)?, slice_mut(workspace, workspace_len)?) };
+        // SAFETY: as above; null means that there are no weights
+        let weight = unsafe { slice(weight, count) }.ok();
+        fit_band(directions, brdf, weight, bounds, workspace)
+    };
+    give(out, fit())
+}
+
+/// Inverts several wavelengths measured at the same directions, one after the other.
+///
+/// - brdf, weight: bands x count values, band after band.
+/// - bands: results, one a band, each with its own status.
+///
+/// Everything else as in lb_fit_band. Returns LB_OK where every band has a result, else the last status that was not.
+///
+/// # Safety
+/// As lb_fit_band, with `brdf` and `weight` pointing to `band_count` x `count` values and `bands` to room for `band_count`
+/// results.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lb_fit_bands(
+    directions: *const lb_direction,
+    brdf: *const f32,
+    weight: *const f32,
+    count: u32,
+    band_count: u32,
+    bounds: Option<&lb_bounds>,
+    workspace: *mut f32,
+    workspace_len: u32,
+    bands: *mut MaybeUninit<lb_band>,
+) -> lb_status {
+    let fit = || {
+        let Some(values) = count.checked_mul(band_count).filter(|values| *values > 0) else { return Err(LB_ERR_COUNT) };
+        // SAFETY: the caller's promise about pointers and lengths
+        let (directions, brdf, workspace, bands) = unsafe {
+            (
+                slice(directions, count)?,
+                slice(brdf, values)?,
+                slice_mut(workspace, workspace_len)?,
+                slice_mut(bands, band_count)?,
+            )
+        };
+        // SAFETY: as above; null means that there are no weights
+        let weight = unsafe { slice(weight, values) }.ok();
+        let mut weights = weight.map(|weight| weight.chunks_exact(count.max(1) as usize));
+        let mut last = LB_OK;
+        for (out, brdf) in bands.iter_mut().zip(brdf.chunks_exact(count.max(1) as usize)) {
+            let weight = weights.as_mut().and_then(Iterator::next);
+            let band = fit_band(directions, brdf, weight, bounds, workspace).unwrap_or_else(lb_band::without);
+            if band.status != LB_OK {
+                last = band.status;
+            }
+            out.write(band);
+        }
+        Ok(last)
+    };
+    fit().unwrap_or_else(|status| status)
+}
+
+/// Starts that see every part of the box.
+const STARTS: [Start<Number>; 4] = [
+    Start { n: 1.47, sigma: 0.06 },
+    Start { n: 1.47, sigma: 0.15 },
+    Start { n: 1.47, sigma: 0.3 },
+    Start { n: 1.47, sigma: 0.6 },
+];
+
+#[inline(never)]
+fn fit_band(
+    directions: &[lb_direction],
+    brdf: &[f32],
+    weight: Option<&[f32]>,
+    bounds: Option<&lb_bounds>,
+    workspace: &mut [f32],
+) -> Result<lb_band, lb_status> {
+    let count = directions.len();
+    let (cos_theta_a, rest) = workspace.split_at_mut_checked(count).ok_or(LB_ERR_WORKSPACE)?;
+    let (tan2_alpha, rest) = rest.split_at_mut_checked(count).ok_or(LB_ERR_WORKSPACE)?;
+    let (lobe, rest) = rest.split_at_mut_checked(count).ok_or(LB_ERR_WORKSPACE)?;
+    let (omega, _) = rest.split_at_mut_checked(count).ok_or(LB_ERR_WORKSPACE)?;
+    for (((direction, c), t), w) in directions.iter().zip(&mut *cos_theta_a).zip(&mut *tan2_alpha).zip(&mut *lobe) {
+        (*c, *t, *w) = (direction.cos_theta_a, direction.tan2_alpha, direction.weight);
+    }
+    match weight {
+        Some(weight) => omega.iter_mut().zip(weight).for_each(|(o, w)| *o = *w),
+        None => omega.fill(1.0),
+    }
+    let mut options = BandOptions::table_3();
+    if let Some(bounds) = bounds {
+        options.bounds = BandBounds {
+            k_lambert: Interval::new(number(bounds.k_lambert_lower), number(bounds.k_lambert_upper)),
+            n: Interval::new(number(bounds.n_lower), number(bounds.n_upper)),
+            sigma: Interval::new(number(bounds.sigma_lower), number(bounds.sigma_upper)),
+        };
+    }
+    let directions = Directions { cos_theta_a, tan2_alpha, weight: lobe };
+    let mut solver = BandSolver::<Number, 1>::new(directions, options, None).map_err(refused)?;
+    let fit = solver.fit(Band { brdf, weight: omega }, &STARTS).map_err(refused)?.ok_or(LB_ERR_TOO_FEW)?;
+    Ok(lb_band::new(&fit))
+}
+
+/// What the fit refused.
+fn refused(error: FitError) -> lb_status {
+    match error {
+        FitError::Bounds { .. } => LB_ERR_BOUNDS,
+        _ => LB_ERR_DATA,
+    }
+}

@@ -1,0 +1,204 @@
+//! The surface and the leaf at one pair of directions: Fresnel factor, BRDF, gradient.
+
+use core::mem::MaybeUninit;
+
+use leafbrdf_core::{Angle, Dielectric, DirectionCosines, DomainError, Geometry, Index, Leaf, Normalization, Surface};
+
+use crate::number::{Number, float, number};
+use crate::status::{
+    LB_ERR_K_LAMBERT, LB_ERR_N, LB_ERR_NORMALIZATION, LB_ERR_NULL, LB_ERR_PHI_V, LB_ERR_SIGMA, LB_ERR_THETA_A,
+    LB_ERR_THETA_S, LB_ERR_THETA_V, LB_OK, lb_status,
+};
+
+/// Constant of the specular term as printed in the paper's Eq. 10, 2 pi^2. Fitted values of the paper belong to it.
+pub const LB_BOUSQUET_2005: u32 = 0;
+/// Constant of the specular term as derived from Eqs 5, 6 and 9, 4 pi: energy-conserving.
+pub const LB_COOK_TORRANCE: u32 = 1;
+
+/// A leaf at one wavelength: a Lambertian interior under a specular surface.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct lb_leaf {
+    /// Lambert coefficient k_L, unitless, 0 to 1.
+    pub k_lambert: f32,
+    /// Refractive index of the surface, unitless, 1 to 10000.
+    pub n: f32,
+    /// Roughness of the surface, unitless, 1e-9 to 1000: facets are spread as exp(-tan^2(alpha)/sigma^2).
+    pub sigma: f32,
+    /// LB_BOUSQUET_2005 or LB_COOK_TORRANCE. An n fitted under one means nothing under the other.
+    pub normalization: u32,
+}
+
+/// Sines and cosines of one pair of directions, as an instrument with fixed directions keeps them in a table.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct lb_cosines {
+    /// cos theta_s, above 0: illumination zenith angle.
+    pub cos_theta_s: f32,
+    /// sin theta_s, 0 to 1.
+    pub sin_theta_s: f32,
+    /// cos theta_v, above 0: viewing zenith angle.
+    pub cos_theta_v: f32,
+    /// sin theta_v, 0 to 1.
+    pub sin_theta_v: f32,
+    /// cos phi_v, -1 to 1: viewing azimuth from the illumination; -1 is the forward, specular side.
+    pub cos_phi_v: f32,
+}
+
+/// BRDF and its exact derivatives, sr^-1.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct lb_gradient {
+    /// BRDF.
+    pub value: f32,
+    /// dBRDF/dk_L.
+    pub d_k_lambert: f32,
+    /// dBRDF/dn.
+    pub d_n: f32,
+    /// dBRDF/dsigma.
+    pub d_sigma: f32,
+}
+
+impl lb_leaf {
+    #[inline(always)]
+    pub(crate) fn checked(&self) -> Result<Leaf<Number>, lb_status> {
+        Leaf::new(number(self.k_lambert), self.surface()?).map_err(|_| LB_ERR_K_LAMBERT)
+    }
+
+    /// n, sigma and normalization; k_lambert is not looked at.
+    #[inline(always)]
+    pub(crate) fn surface(&self) -> Result<Surface<Number>, lb_status> {
+        let n = number(self.n);
+        // named apart: the constructor's error could be either
+        Dielectric::new(n).map_err(|_| LB_ERR_N)?;
+        let surface = Surface::new(n, number(self.sigma)).map_err(|_| LB_ERR_SIGMA)?;
+        Ok(surface.with_normalization(normalization(self.normalization)?))
+    }
+}
+
+/// The convention for K.
+#[inline(always)]
+pub(crate) fn normalization(code: u32) -> Result<Normalization, lb_status> {
+    match code {
+        LB_BOUSQUET_2005 => Ok(Normalization::Bousquet2005),
+        LB_COOK_TORRANCE => Ok(Normalization::CookTorrance),
+        _ => Err(LB_ERR_NORMALIZATION),
+    }
+}
+
+impl lb_cosines {
+    #[inline(always)]
+    pub(crate) fn checked(&self) -> Result<Geometry<Number>, lb_status> {
+        Geometry::from_cosines(DirectionCosines {
+            cos_theta_s: number(self.cos_theta_s),
+            sin_theta_s: number(self.sin_theta_s),
+            cos_theta_v: number(self.cos_theta_v),
+            sin_theta_v: number(self.sin_theta_v),
+            cos_phi_v: number(self.cos_phi_v),
+        })
+        .map_err(|error| direction(&error))
+    }
+}
+
+/// Directions from angles in degrees.
+#[inline(always)]
+pub(crate) fn from_degrees(
+    theta_s_deg: f32,
+    theta_v_deg: f32,
+    phi_v_deg: f32,
+) -> Result<Geometry<Number>, lb_status> {
+    let angle = |degrees| Angle::from_degrees(number(degrees));
+    Geometry::from_angles(angle(theta_s_deg), angle(theta_v_deg), angle(phi_v_deg)).map_err(|error| direction(&error))
+}
+
+/// Which angle the model refused.
+pub(crate) fn direction(error: &DomainError) -> lb_status {
+    match error.parameter.as_bytes() {
+        [b't', .., b's'] => LB_ERR_THETA_S,
+        [b't', .., b'v'] => LB_ERR_THETA_V,
+        _ => LB_ERR_PHI_V,
+    }
+}
+
+/// `Ok` written to its place, or the status.
+#[inline(always)]
+pub(crate) fn give<T>(out: &mut MaybeUninit<T>, result: Result<T, lb_status>) -> lb_status {
+    match result {
+        Ok(value) => {
+            out.write(value);
+            LB_OK
+        }
+        Err(status) => status,
+    }
+}
+
+/// Fresnel factor of a facet (Eq. 8): the share of unpolarised light that it reflects, unitless, 0 to 1.
+///
+/// - n: refractive index, 1 to 10000.
+/// - cos_theta_a: cosine of the incidence angle on the facet, 0 to 1.
+///
+/// Example: n = 1.5 at cos_theta_a = 1 gives 0.04.
+#[unsafe(no_mangle)]
+pub extern "C" fn lb_fresnel(n: f32, cos_theta_a: f32, fresnel: Option<&mut MaybeUninit<f32>>) -> lb_status {
+    let Some(out) = fresnel else { return LB_ERR_NULL };
+    if !(0.0..=1.0).contains(&cos_theta_a) {
+        return LB_ERR_THETA_A;
+    }
+    let index = Dielectric::new(number(n)).map_err(|_| LB_ERR_N);
+    give(out, index.map(|index| float(index.fresnel(number(cos_theta_a)))))
+}
+
+/// BRDF of a leaf in sr^-1 (Eqs 3, 4, 10) from sines and cosines.
+///
+/// Relative error below 1e-5 where tan^2(alpha)/sigma^2 < 14, 2.5e-5 below 80.
+#[unsafe(no_mangle)]
+pub extern "C" fn lb_brdf(
+    leaf: Option<&lb_leaf>,
+    at: Option<&lb_cosines>,
+    brdf: Option<&mut MaybeUninit<f32>>,
+) -> lb_status {
+    let (Some(leaf), Some(at), Some(out)) = (leaf, at, brdf) else { return LB_ERR_NULL };
+    let value = |leaf: &lb_leaf| Ok(float(leaf.checked()?.brdf(&at.checked()?)));
+    give(out, value(leaf))
+}
+
+/// BRDF and its exact derivatives with respect to k_L, n and sigma, sr^-1.
+#[unsafe(no_mangle)]
+pub extern "C" fn lb_brdf_gradient(
+    leaf: Option<&lb_leaf>,
+    at: Option<&lb_cosines>,
+    gradient: Option<&mut MaybeUninit<lb_gradient>>,
+) -> lb_status {
+    let (Some(leaf), Some(at), Some(out)) = (leaf, at, gradient) else { return LB_ERR_NULL };
+    let value = |leaf: &lb_leaf| {
+        let gradient = leaf.checked()?.brdf_with_gradient(&at.checked()?);
+        Ok(lb_gradient {
+            value: float(gradient.value),
+            d_k_lambert: float(gradient.d_k_lambert),
+            d_n: float(gradient.d_n),
+            d_sigma: float(gradient.d_sigma),
+        })
+    };
+    give(out, value(leaf))
+}
+
+/// BRDF of a leaf in sr^-1 from angles in degrees.
+///
+/// - theta_s_deg, theta_v_deg: zenith angles of illumination and view, 0 <= theta < 90 degrees.
+/// - phi_v_deg: azimuth of the view from the illumination, -360 to 360 degrees; 180 is the forward, specular side.
+///
+/// Where directions are fixed, a table of lb_direction and lb_brdf_at are several times faster.
+///
+/// Example: laurel (k_lambert 0, n 1.22, sigma 0.078, LB_BOUSQUET_2005) at 60, 60, 180 degrees gives 1.25 sr^-1.
+#[unsafe(no_mangle)]
+pub extern "C" fn lb_brdf_from_degrees(
+    leaf: Option<&lb_leaf>,
+    theta_s_deg: f32,
+    theta_v_deg: f32,
+    phi_v_deg: f32,
+    brdf: Option<&mut MaybeUninit<f32>>,
+) -> lb_status {
+    let (Some(leaf), Some(out)) = (leaf, brdf) else { return LB_ERR_NULL };
+    let value = |leaf: &lb_leaf| Ok(float(leaf.checked()?.brdf(&from_degrees(theta_s_deg, theta_v_deg, phi_v_deg)?)));
+    give(out, value(leaf))
+}
