@@ -68,12 +68,6 @@
 #define LB_SLICE_BANDS 121
 
 /**
- * Numbers of workspace that lb_fit_cab takes for each band: the slice's columns, the reflectance, and one block of residuals
- * with derivatives.
- */
-#define LB_CAB_WORKSPACE_PER_BAND 16
-
-/**
  * Constant of the specular term as printed in the paper's Eq. 10, 2 pi^2. Fitted values of the paper belong to it.
  */
 #define LB_BOUSQUET_2005 0
@@ -191,32 +185,6 @@ typedef struct lb_band {
 } lb_band;
 
 /**
- * Sines and cosines of one pair of directions, as an instrument with fixed directions keeps them in a table.
- */
-typedef struct lb_cosines {
-  /**
-   * cos theta_s, above 0: illumination zenith angle.
-   */
-  float cos_theta_s;
-  /**
-   * sin theta_s, 0 to 1.
-   */
-  float sin_theta_s;
-  /**
-   * cos theta_v, above 0: viewing zenith angle.
-   */
-  float cos_theta_v;
-  /**
-   * sin theta_v, 0 to 1.
-   */
-  float sin_theta_v;
-  /**
-   * cos phi_v, -1 to 1: viewing azimuth from the illumination; -1 is the forward, specular side.
-   */
-  float cos_phi_v;
-} lb_cosines;
-
-/**
  * A leaf at one wavelength: a Lambertian interior under a specular surface.
  */
 typedef struct lb_leaf {
@@ -247,27 +215,27 @@ typedef struct lb_interior {
    */
   float n_struct;
   /**
-   * C_ab, chlorophylls a + b, ug cm^-2.
+   * C_ab, chlorophylls a + b, ug cm^-2, 0 to 300.
    */
   float cab;
   /**
-   * C_car, carotenoids, ug cm^-2.
+   * C_car, carotenoids, ug cm^-2, 0 to 100.
    */
   float car;
   /**
-   * C_ant, anthocyanins, ug cm^-2.
+   * C_ant, anthocyanins, ug cm^-2, 0 to 200.
    */
   float cant;
   /**
-   * C_brown, brown pigments, arbitrary units.
+   * C_brown, brown pigments, arbitrary units, 0 to 10.
    */
   float cbrown;
   /**
-   * C_w, equivalent water thickness, cm.
+   * C_w, equivalent water thickness, cm, 0 to 1.
    */
   float cw;
   /**
-   * C_m, dry matter, g cm^-2.
+   * C_m, dry matter, g cm^-2, 0 to 0.2.
    */
   float cm;
 } lb_interior;
@@ -277,11 +245,11 @@ typedef struct lb_interior {
  */
 typedef struct lb_cab {
   /**
-   * N, number of plates.
+   * N, number of plates; sought from 1 to 5.
    */
   float n_struct;
   /**
-   * C_ab, chlorophylls a + b, ug cm^-2.
+   * C_ab, chlorophylls a + b, ug cm^-2; sought from 0 to 150.
    */
   float cab;
   /**
@@ -309,6 +277,32 @@ typedef struct lb_cab {
    */
   uint32_t converged;
 } lb_cab;
+
+/**
+ * Sines and cosines of one pair of directions, as an instrument with fixed directions keeps them in a table.
+ */
+typedef struct lb_cosines {
+  /**
+   * cos theta_s, above 0: illumination zenith angle.
+   */
+  float cos_theta_s;
+  /**
+   * sin theta_s, 0 to 1.
+   */
+  float sin_theta_s;
+  /**
+   * cos theta_v, above 0: viewing zenith angle.
+   */
+  float cos_theta_v;
+  /**
+   * sin theta_v, 0 to 1.
+   */
+  float sin_theta_v;
+  /**
+   * cos phi_v, -1 to 1: viewing azimuth from the illumination; -1 is the forward, specular side.
+   */
+  float cos_phi_v;
+} lb_cosines;
 
 /**
  * BRDF and its exact derivatives, sr^-1.
@@ -468,6 +462,29 @@ lb_status lb_fit_bands(const struct lb_direction *directions,
                        struct lb_band *bands);
 
 /**
+ * Chlorophyll content of a leaf whose surface is known: N and C_ab from k_L at a few wavelengths (Eqs 16 to 18: the
+ * interior's reflectance is k_L + DHRF_spec(n, sigma, 0)), the other contents held as given.
+ *
+ * - surface: n, sigma and their normalization; k_lambert is not looked at.
+ * - wavelengths_nm: inside the slice, in any order; between its bands the table is interpolated. Some in the red edge
+ *   (700 to 740 nm) and some in the near infrared, or C_ab and N stay unknown.
+ * - k_lambert: k_L at these wavelengths, one value each; more than 2.
+ * - bands: their number.
+ * - held: the other contents; its n_struct and cab are not looked at, but must lie in their ranges.
+ *
+ * Bounded: at most 80 steps in all, each with at most two passes over the wavelengths.
+ *
+ * # Safety
+ * `wavelengths_nm` and `k_lambert` point to `bands` values, or are null.
+ */
+lb_status lb_fit_cab(const struct lb_leaf *surface,
+                     const float *wavelengths_nm,
+                     const float *k_lambert,
+                     uint32_t bands,
+                     const struct lb_interior *held,
+                     struct lb_cab *cab);
+
+/**
  * Prepares one pair of directions from angles in degrees (ranges as in lb_brdf_from_degrees).
  *
  * - normalization: LB_BOUSQUET_2005 or LB_COOK_TORRANCE; n and sigma fitted with these directions belong to it.
@@ -516,38 +533,13 @@ lb_status lb_dhrf(const struct lb_leaf *leaf,
  * - reflectance, transmittance: room for so many values.
  *
  * # Safety
- * `reflectance` and `transmittance` point to `bands` values each that nothing else uses during the call, or are null.
+ * `reflectance` and `transmittance` point to room for `bands` values each that nothing else uses during the call, or are null.
  */
 lb_status lb_prospect_slice(const struct lb_interior *interior,
                             uint32_t first_band,
                             uint32_t bands,
                             float *reflectance,
                             float *transmittance);
-
-/**
- * Chlorophyll content of a leaf whose surface is known: N and C_ab from k_L at a few wavelengths (Eqs 16 to 18: the
- * interior's reflectance is k_L + DHRF_spec(n, sigma, 0)), the other contents held as given.
- *
- * - surface: n, sigma and their normalization; k_lambert is not looked at.
- * - wavelengths_nm: rising, within the slice; between its bands the table is interpolated. Some in the red edge
- *   (700 to 740 nm) and some in the near infrared, or C_ab and N stay unknown.
- * - k_lambert: k_L at these wavelengths, one value each; more than 2.
- * - bands: their number.
- * - held: contents that are not sought; its n_struct and cab are where a second search starts.
- * - workspace, workspace_len: LB_CAB_WORKSPACE_PER_BAND numbers a band; contents do not matter before and after.
- *
- * # Safety
- * `wavelengths_nm` and `k_lambert` point to `bands` values, `workspace` to `workspace_len` values that nothing else uses
- * during the call; or they are null.
- */
-lb_status lb_fit_cab(const struct lb_leaf *surface,
-                     const float *wavelengths_nm,
-                     const float *k_lambert,
-                     uint32_t bands,
-                     const struct lb_interior *held,
-                     float *workspace,
-                     uint32_t workspace_len,
-                     struct lb_cab *cab);
 
 /**
  * What a status means, in one English sentence in ASCII: a constant string, never null.

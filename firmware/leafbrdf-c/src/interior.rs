@@ -4,10 +4,10 @@ use core::mem::MaybeUninit;
 
 use leafbrdf_core::Real;
 use leafbrdf_prospect::table::{TableD, View};
-use leafbrdf_prospect::{Interface, LeafParams, Version, plates};
+use leafbrdf_prospect::{Interface, LeafParams, Prospect, Version};
 
 use crate::border::slice_mut;
-use crate::number::{Number, float, number};
+use crate::number::{Number, number};
 use crate::status::{LB_ERR_COUNT, LB_ERR_INTERIOR, LB_ERR_NULL, LB_OK, lb_status};
 
 /// First wavelength of the slice of PROSPECT-D that is built in, nm.
@@ -122,12 +122,11 @@ pub unsafe extern "C" fn lb_prospect_slice(
         // SAFETY: the caller's promise about pointer and length
         let (reflectance, transmittance) = unsafe { (slice_mut(reflectance, bands)?, slice_mut(transmittance, bands)?) };
         let leaf = interior.checked()?;
+        let model = Prospect::new(SLICE.view());
         for ((band, r), t) in (first_band as usize..).zip(reflectance).zip(transmittance) {
-            let Wavelength { faces, others, cab } = Wavelength::new(&leaf, band, 0.0).ok_or(LB_ERR_COUNT)?;
-            let n_struct = number(leaf.n_struct);
-            let optics = plates(faces, (others + number(leaf.cab) * cab) / n_struct, n_struct);
-            r.write(float(optics.reflectance));
-            t.write(float(optics.transmittance));
+            let optics = model.band(&leaf, band).map_err(|_| LB_ERR_INTERIOR)?;
+            r.write(optics.reflectance);
+            t.write(optics.transmittance);
         }
         Ok(LB_OK)
     };
