@@ -12,6 +12,7 @@ mod list;
 mod model;
 mod normalization;
 mod prospect;
+mod simulate;
 mod version;
 
 use std::io;
@@ -34,6 +35,7 @@ pub enum Command {
     Fresnel(fresnel::Arguments),
     Dhrf(dhrf::Arguments),
     Prospect(Box<prospect::Arguments>),
+    Simulate(Box<simulate::Arguments>),
     Fit(fit::Arguments),
     Convert(convert::Arguments),
     Demo(demo::Arguments),
@@ -47,6 +49,7 @@ impl Command {
             Command::Fresnel(arguments) => fresnel::run(&arguments),
             Command::Dhrf(arguments) => dhrf::run(&arguments),
             Command::Prospect(arguments) => prospect::run(&arguments),
+            Command::Simulate(arguments) => simulate::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),
             Command::Convert(arguments) => convert::run(&arguments),
             Command::Demo(arguments) => demo::run(&arguments),

@@ -11,15 +11,16 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use leafbrdf_core::{Normalization, Surface};
+use leafbrdf_core::Normalization;
 use leafbrdf_fit::{BandOptions, LeafBandsOptions, band::Weights};
 
 use crate::fit::{FitFailure, LeafRow, Selected, Selection, Summary, fit_bands, write_bands, write_leaves};
 use crate::measurement::{
     Measurement, Metadata, ReadError, ReadOptions, WriteError, WriteOptions, read_path, write_path,
 };
-use crate::output::{Cell, Format, TableWriter};
-use crate::simulate::{CoupledLeaf, Noise, PresetLeaf, SimulationError, paper_directions, presets};
+use crate::simulate::{
+    CoupledLeaf, Instrument, LeafModel, Noise, PresetLeaf, SimulationError, paper_directions, presets, write_truth,
+};
 
 /// Seed of the noise: the paper's year.
 pub const SEED: u64 = 2005;
@@ -90,8 +91,9 @@ pub fn run(folder: &Path) -> Result<DemoReport, DemoError> {
         let leaf = true_leaf(preset)?;
         let path = measurements.join(format!("{}.csv", preset.name));
         let noise = Noise::new(Noise::RELATIVE, Noise::ABSOLUTE, seed);
-        write_path(&path, &[simulated(preset, &leaf, noise)?], &WriteOptions::default())?;
-        write_truth(&truth.join(format!("{}.csv", preset.name)), preset, &leaf)?;
+        write_path(&path, &[simulated(preset, &leaf, noise, seed)?], &WriteOptions::default())?;
+        let file = truth.join(format!("{}.csv", preset.name));
+        write_truth(&file, &leaf).map_err(in_file(&file))?;
 
         // from here on nothing is known but the file
         for measured in read_path(&path, &ReadOptions::default())? {
@@ -119,29 +121,23 @@ fn in_file(place: &Path) -> impl Fn(io::Error) -> DemoError {
 
 /// n and σ of Table 4 over the preset's interior, 480–879 nm, K = 2π².
 fn true_leaf(preset: &PresetLeaf) -> Result<CoupledLeaf, DemoError> {
-    let surface = Surface::new(preset.n, preset.sigma).map_err(SimulationError::from)?;
-    let leaf = CoupledLeaf::new(surface.with_normalization(Normalization::Bousquet2005), &preset.interior, 480..=879)?;
+    let wavelengths_nm: Vec<f64> = (480..=879).map(f64::from).collect();
+    let leaf = LeafModel::of_preset(preset)?.at(&wavelengths_nm)?;
     match leaf.negative() {
         0 => Ok(leaf),
         negative => Err(DemoError::Failed(format!("{}: k_L is negative at {negative} wavelengths", preset.name))),
     }
 }
 
-fn simulated(preset: &PresetLeaf, leaf: &CoupledLeaf, mut noise: Noise) -> Result<Measurement, DemoError> {
+fn simulated(preset: &PresetLeaf, leaf: &CoupledLeaf, mut noise: Noise, seed: u64) -> Result<Measurement, DemoError> {
+    let instrument = Instrument::new(paper_directions());
     let mut metadata = Metadata::new();
-    let interior = &preset.interior;
     metadata.push("species", preset.species);
     metadata.push("source", "simulated by leafbrdf demo, not measured");
-    metadata.push("surface", format!("n {} sigma {}, bousquet2005 (Table 4)", preset.n, preset.sigma));
-    metadata.push(
-        "interior",
-        format!(
-            "PROSPECT-D, N {} Cab {} ug/cm2 Car {} ug/cm2 Cw {} cm Cm {} g/cm2",
-            interior.n_struct, interior.cab, interior.car, interior.cw, interior.cm
-        ),
-    );
-    metadata.push("noise", format!("{} of the value, {} sr^-1", noise.relative, noise.absolute));
-    Ok(leaf.measure(preset.name, metadata, &paper_directions(), &mut noise)?)
+    leaf.model.describe(&mut metadata);
+    instrument.describe(&mut metadata);
+    noise.describe(seed, &mut metadata);
+    Ok(instrument.measure(leaf, preset.name, metadata, &mut noise)?)
 }
 
 /// What `leafbrdf fit --model bands` does without further options.
@@ -151,15 +147,4 @@ fn fit_options() -> LeafBandsOptions {
         band: BandOptions { weights: Weights::Relative, ..BandOptions::table_3() },
         ..LeafBandsOptions::default()
     }
-}
-
-fn write_truth(path: &Path, preset: &PresetLeaf, leaf: &CoupledLeaf) -> Result<(), DemoError> {
-    let write = || -> io::Result<()> {
-        let mut table = TableWriter::create(Some(path), Some(Format::Csv), &["wavelength_nm", "k_l", "n", "sigma"])?;
-        for (nm, k_l) in leaf.wavelengths_nm.iter().zip(&leaf.k_lambert) {
-            table.row(&[*nm, *k_l, preset.n, preset.sigma].map(Cell::Number))?;
-        }
-        table.finish()
-    };
-    write().map_err(in_file(path))
 }

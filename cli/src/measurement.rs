@@ -7,6 +7,7 @@
 //! | `cell` | one cell → one number, to the last bit |
 //! | `wide`, `long` | the two layouts |
 //! | `check` | what the columns of both layouts must satisfy |
+//! | `directions` | the directions alone, of these files or of a table of angles |
 //! | `azimuth` | the two azimuth conventions |
 //! | `write` | both layouts again, outwards |
 //!
@@ -15,6 +16,7 @@
 mod azimuth;
 pub(crate) mod cell;
 mod check;
+mod directions;
 mod error;
 pub(crate) mod header;
 pub(crate) mod input;
@@ -24,6 +26,7 @@ mod wide;
 mod write;
 
 pub use azimuth::Azimuth;
+pub use directions::{directions_from_bytes, read_directions};
 pub use error::{ReadError, WriteError};
 pub use header::Metadata;
 pub use read::{ReadOptions, read_bytes, read_path};

@@ -168,7 +168,7 @@ fn mean_dhrf(theta_s_deg: f64, leaf: &CoupledLeaf, fitted: &[FittedBand]) -> f64
     let of_band = |band: &FittedBand| {
         let [_, n, sigma] = band.value;
         let surface = Surface::new(n, sigma).ok()?;
-        Some(surface.with_normalization(leaf.normalization()).dhrf(&source, Grade::E6))
+        Some(surface.with_normalization(leaf.model.surface.normalization()).dhrf(&source, Grade::E6))
     };
     fitted.iter().filter_map(of_band).sum::<f64>() / fitted.len() as f64
 }

@@ -91,7 +91,7 @@ pub(crate) fn stem(path: &Path) -> String {
     stem.to_string()
 }
 
-fn azimuth(source: Source<'_>, header: &Header, options: &ReadOptions) -> Result<Azimuth, ReadError> {
+pub(super) fn azimuth(source: Source<'_>, header: &Header, options: &ReadOptions) -> Result<Azimuth, ReadError> {
     match (header.azimuth, options.azimuth) {
         (Some((stated, line)), Some(asked)) if stated != asked => Err(ReadError {
             line: Some(line),

@@ -126,7 +126,7 @@ fn quantity(context: &Context<'_>) -> Result<Quantity, ReadError> {
 }
 
 /// The three rows of angles, in any order, and how many cells a row has.
-fn directions(
+pub(super) fn directions(
     source: Source<'_>,
     records: &mut csv::Reader<&[u8]>,
     record: &mut ByteRecord,

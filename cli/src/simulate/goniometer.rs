@@ -42,7 +42,7 @@ pub fn paper_directions() -> Vec<Direction> {
         Direction {
             theta_s_deg,
             theta_v_deg: rounded(x.hypot(y).atan2(z).to_degrees()),
-            phi_v_deg: if phi < 0.0 { phi + 360.0 } else { phi },
+            phi_v_deg: if phi < 0.0 { rounded(phi + 360.0) } else { phi },
         }
     };
     let positions = || POSITIONS.map(|position| f64::from(position) * POSITION_STEP_DEG);

@@ -2,6 +2,8 @@
 
 use leafbrdf_core::{Portable, Real};
 
+use crate::measurement::Metadata;
+
 /// Independent Gaussian noise of standard deviation √((relative · value)² + absolute²).
 #[derive(Clone, Debug)]
 pub struct Noise {
@@ -23,13 +25,25 @@ impl Noise {
         Noise { relative, absolute, gauss: Gauss::new(seed) }
     }
 
+    /// Whether nothing is added to any value.
+    pub fn is_nothing(&self) -> bool {
+        self.relative == 0.0 && self.absolute == 0.0
+    }
+
     /// The standard deviation that is added to a value, sr⁻¹.
     pub fn sd(&self, brdf: f64) -> f64 {
         let proportional = self.relative * brdf;
         (proportional * proportional + self.absolute * self.absolute).sqrt()
     }
 
-    /// A value with noise, sr⁻¹.
+    /// Size and seed as a line of a file's header.
+    pub fn describe(&self, seed: u64, metadata: &mut Metadata) {
+        let Noise { relative, absolute, .. } = self;
+        let text = format!("Gaussian, sd^2 = ({relative} of the value)^2 + ({absolute} sr^-1)^2, seed {seed}");
+        metadata.push("noise", if self.is_nothing() { "none".to_string() } else { text });
+    }
+
+    /// A value with noise, sr⁻¹; a missing one (NaN) stays missing.
     pub fn on(&mut self, brdf: f64) -> f64 {
         brdf + self.sd(brdf) * self.gauss.draw()
     }
