@@ -8,6 +8,7 @@ mod dhrf;
 mod fit;
 mod fresnel;
 mod inputs;
+mod leaf;
 mod list;
 mod model;
 mod normalization;
@@ -35,6 +36,7 @@ pub enum Command {
     Fresnel(fresnel::Arguments),
     Dhrf(dhrf::Arguments),
     Prospect(Box<prospect::Arguments>),
+    Leaf(leaf::Arguments),
     Simulate(Box<simulate::Arguments>),
     Fit(fit::Arguments),
     Convert(convert::Arguments),
@@ -49,6 +51,7 @@ impl Command {
             Command::Fresnel(arguments) => fresnel::run(&arguments),
             Command::Dhrf(arguments) => dhrf::run(&arguments),
             Command::Prospect(arguments) => prospect::run(&arguments),
+            Command::Leaf(arguments) => leaf::run(&arguments),
             Command::Simulate(arguments) => simulate::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),
             Command::Convert(arguments) => convert::run(&arguments),
