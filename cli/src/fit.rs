@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `select` | which wavelengths and directions take part |
 //! | `bands` | k_L, n, σ at each wavelength: the inversion, `bands.csv`, `dhrf.csv` |
+//! | `surface` | one n, σ for the leaf and k_L at each wavelength |
 //! | `prospect` | structure and contents from hemispherical spectra |
 //! | `summary` | `summary.json`: the leaf as a whole, and what the user should be warned of |
 //! | `leaves` | `leaves.csv`: one row a leaf |
@@ -13,12 +14,14 @@ mod leaves;
 mod prospect;
 mod select;
 mod summary;
+mod surface;
 
 pub use bands::{BandsOutcome, fit_bands, write_bands};
 pub use leaves::{LeafRecord, LeafRow, LeafValues, write_leaves, write_records};
 pub use prospect::{ProspectOptions, ProspectOutcome, fit_prospect};
 pub use select::{Selected, Selection, WavelengthRange};
 pub use summary::Summary;
+pub use surface::{SurfaceOutcome, fit_surface};
 
 use std::fmt;
 

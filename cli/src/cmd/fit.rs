@@ -1,6 +1,7 @@
 //! `leafbrdf fit`: the main job, inversion of measured leaf BRDF; and of hemispherical spectra.
 
 mod prospect;
+mod surface;
 
 use std::collections::HashMap;
 use std::fs;
@@ -24,6 +25,8 @@ use super::{Failure, NormalizationName};
 enum Model {
     /// k_L, n and σ at each wavelength (§4.2)
     Bands,
+    /// One n and σ for the leaf, k_L at each wavelength; with options a tilt of the leaf, other facets, another diffuse term
+    Surface,
     /// PROSPECT's parameters, from hemispherical reflectance, transmittance or both
     Prospect,
 }
@@ -39,6 +42,8 @@ enum Model {
 #[command(after_help = "Examples:
   leafbrdf fit laurel.csv --model bands -o laurel-fit
   leafbrdf fit leaves/*.csv --model bands --wavelengths 480:879 --normalization cook-torrance -o out
+  leafbrdf fit laurel.csv --model surface -o laurel-surface
+  leafbrdf fit leaves/*.csv --model surface --tilt --facets ggx --diffuse p1 -o out
   leafbrdf fit sphere.csv --model prospect --prospect D --fix cbrown=0 -o sphere-fit")]
 pub struct Arguments {
     /// Measurement files, wide or long (for prospect: spectra), plain or gzip; - is standard input
@@ -50,16 +55,17 @@ pub struct Arguments {
     /// Folder for the results; made where it does not exist
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    /// The constant K of Eq. 10 that n and sigma belong to: 2π² as printed, or 4π
-    #[arg(long, value_enum, default_value = "bousquet2005")]
-    normalization: NormalizationName,
+    /// The constant K of Eq. 10 that n and sigma belong to: 2π² as printed, or 4π [default: bousquet2005; with --facets ggx
+    /// cook-torrance]
+    #[arg(long, value_enum)]
+    normalization: Option<NormalizationName>,
     /// Wavelengths in nm, both ends included; all in the file without it
     #[arg(long, value_name = "FIRST:LAST[:STEP]")]
     wavelengths: Option<WavelengthRange>,
     /// Directions with a larger viewing zenith angle, in degrees, are left out (§2.3)
     #[arg(long, value_name = "DEG", default_value_t = 70.0, value_parser = angle)]
     max_theta_v: f64,
-    /// Bounds of the Lambert coefficient (Table 3)
+    /// Bounds of the Lambert coefficient (Table 3). With --model surface k_l is not held within them: those outside are counted
     #[arg(long, value_name = "LOWER:UPPER", default_value = "0.01:0.99", allow_hyphen_values = true)]
     k_l_bounds: Range,
     /// Bounds of the refractive index (Table 3)
@@ -75,9 +81,10 @@ pub struct Arguments {
     /// A start of your own for sigma (with --start-n; Table 3: 0.3)
     #[arg(long, value_name = "SIGMA")]
     start_sigma: Option<f64>,
-    /// The most valleys of χ² that are searched in each band; the scan over n and sigma finds them
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u8).range(1..=4))]
-    starts: u8,
+    /// The most valleys of χ² that are searched; a scan of the whole box finds them [default: 4 in each band (1 to 4), 8 for a
+    /// surface (1 to 12)]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=12))]
+    starts: Option<u8>,
     /// Huber's loss: values far from the model count less
     #[arg(long)]
     robust: bool,
@@ -93,6 +100,8 @@ pub struct Arguments {
     /// Threads; as many as the machine has cores without it. The results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    #[command(flatten)]
+    surface: surface::Options,
     #[command(flatten)]
     prospect: prospect::Options,
 }
@@ -124,6 +133,26 @@ fn angle(text: &str) -> Result<f64, String> {
 }
 
 impl Arguments {
+    /// The user's own start must lie inside the bounds.
+    fn check_starts(&self) -> Result<(), Failure> {
+        for (option, value, within) in
+            [("--start-n", self.start_n, self.n_bounds), ("--start-sigma", self.start_sigma, self.sigma_bounds)]
+        {
+            if let Some(value) = value
+                && !(value >= within.0 && value <= within.1)
+            {
+                let message = format!("{option} {value} lies outside its bounds {}:{}", within.0, within.1);
+                return Err(Failure::Usage(message));
+            }
+        }
+        Ok(())
+    }
+
+    /// The convention for K where the facets are the paper's.
+    fn normalization(&self) -> Normalization {
+        self.normalization.map_or(Normalization::Bousquet2005, Normalization::from)
+    }
+
     fn options(&self) -> Result<LeafBandsOptions, Failure> {
         let interval = |Range(lower, upper)| Interval::new(lower, upper);
         let bounds = BandBounds {
@@ -135,22 +164,16 @@ impl Arguments {
             (None, None) => None,
             (n, sigma) => Some(Start { n: n.unwrap_or(1.47), sigma: sigma.unwrap_or(0.3) }),
         };
-        if let Some(Start { n, sigma }) = start {
-            for (option, value, within) in
-                [("--start-n", n, self.n_bounds), ("--start-sigma", sigma, self.sigma_bounds)]
-            {
-                if !(value >= within.0 && value <= within.1) {
-                    let message = format!("{option} {value} lies outside its bounds {}:{}", within.0, within.1);
-                    return Err(Failure::Usage(message));
-                }
-            }
+        self.check_starts()?;
+        if self.starts.is_some_and(|starts| starts > 4) {
+            return Err(Failure::Usage("--starts: expected 1 to 4 for --model bands".to_string()));
         }
         bounds.check().map_err(|error| Failure::Usage(error.to_string()))?;
         Ok(LeafBandsOptions {
-            normalization: self.normalization.into(),
+            normalization: self.normalization(),
             band: BandOptions {
                 bounds,
-                starts: usize::from(self.starts),
+                starts: usize::from(self.starts.unwrap_or(4)),
                 weights: Weights::Relative,
                 ..BandOptions::table_3()
             },
@@ -164,6 +187,7 @@ impl Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match arguments.model {
         Model::Bands => bands(arguments),
+        Model::Surface => surface::run(arguments),
         Model::Prospect => prospect::run(arguments),
     }
 }
@@ -181,6 +205,7 @@ fn prepare(arguments: &Arguments) -> Result<rayon::ThreadPool, Failure> {
 fn bands(arguments: &Arguments) -> Result<(), Failure> {
     let options = arguments.options()?;
     arguments.prospect.refuse()?;
+    arguments.surface.refuse("bands")?;
     let pool = prepare(arguments)?;
     let bar = progress_bar("bands");
     let leaves = read(arguments);
@@ -203,7 +228,7 @@ fn bands(arguments: &Arguments) -> Result<(), Failure> {
     });
     bar.finish_and_clear();
 
-    let convention = Normalization::from(arguments.normalization).name();
+    let convention = arguments.normalization().name();
     write_leaves(&arguments.output, "bands", convention, &rows)
         .map_err(|error| Failure::writing(Some(&arguments.output.join("leaves.csv")), &error))?;
     report(&rows)

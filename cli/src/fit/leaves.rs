@@ -18,7 +18,7 @@ pub struct LeafRow {
 }
 
 /// The columns that the contract names, in its order; cells of parameters that a model does not have are empty.
-const COLUMNS: [&str; 32] = [
+const COLUMNS: [&str; 42] = [
     "leaf",
     "status",
     "model",
@@ -51,6 +51,16 @@ const COLUMNS: [&str; 32] = [
     "cm_se",
     "prot_se",
     "cbc_se",
+    "n_se",
+    "sigma_se",
+    "tilt_in_plane_deg_se",
+    "tilt_lateral_deg_se",
+    "p1_a",
+    "p1_b",
+    "p1_a_se",
+    "p1_b_se",
+    "facets",
+    "diffuse",
 ];
 
 /// What a row says of a leaf that was fitted; `None` where a model has no such parameter.
@@ -68,6 +78,14 @@ pub struct LeafValues {
     pub prospect: [Option<f64>; 9],
     /// Their standard errors.
     pub prospect_se: [Option<f64>; 9],
+    /// Standard errors of n, σ and both tilts (degrees).
+    pub surface_se: [Option<f64>; 4],
+    /// a and b of the diffuse term P1.
+    pub p1: [Option<f64>; 2],
+    /// Their standard errors.
+    pub p1_se: [Option<f64>; 2],
+    /// Distribution of facets, and shape of the diffuse term.
+    pub kinds: Option<[&'static str; 2]>,
     /// √(Σ residual²/values): sr⁻¹ of BRDF, or for `prospect` a fraction (reflectance, transmittance).
     pub rmse: f64,
     /// 1 − Σ residual²/Σ (value − mean)².
@@ -87,6 +105,7 @@ impl From<&Summary> for LeafValues {
             r2: summary.r2,
             bands: summary.fitted,
             warnings: summary.warnings.clone(),
+            kinds: Some(["beckmann", "lambert"]),
             ..LeafValues::default()
         }
     }
@@ -133,13 +152,15 @@ pub fn write_records(
                 row.extend([Cell::Count(values.bands as u64), Cell::Count(values.warnings.len() as u64)]);
                 message = values.warnings.join(" | ");
                 row.extend([Cell::Text(file), Cell::Text(&message)]);
-                row.extend(values.prospect_se.iter().map(number));
+                let errors = values.prospect_se.iter().chain(&values.surface_se);
+                row.extend(errors.chain(&values.p1).chain(&values.p1_se).map(number));
+                row.extend(values.kinds.map_or([Cell::Empty; 2], |kinds| kinds.map(Cell::Text)));
             }
             Err(sentence) => {
                 row.push(normalization.map_or(Cell::Empty, Cell::Text));
                 row.extend([Cell::Empty; 17]);
                 row.extend([Cell::Text(file), Cell::Text(sentence)]);
-                row.extend([Cell::Empty; 9]);
+                row.extend([Cell::Empty; 19]);
             }
         }
         table.row(&row)?;

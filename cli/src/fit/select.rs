@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use leafbrdf_core::{Angle, Geometry};
+use leafbrdf_core::{Angle, DirectionVectors, Geometry};
 
 use super::FitFailure;
 use crate::measurement::Measurement;
@@ -79,6 +79,8 @@ pub struct Selected {
     pub theta_s_deg: Vec<f64>,
     /// One geometry a direction.
     pub geometries: Vec<Geometry<f64>>,
+    /// The same directions as vectors, for leaves that may be tilted.
+    pub vectors: Vec<DirectionVectors<f64>>,
     /// BRDF in sr⁻¹, band by band; NaN where missing.
     pub brdf: Vec<f64>,
     /// Standard deviations in the same order, where the file has them and they are asked for.
@@ -132,6 +134,14 @@ impl Selected {
                     .map_err(|error| FitFailure(error.to_string()))
             })
             .collect::<Result<Vec<_>, _>>()?;
+        let vectors = kept
+            .iter()
+            .map(|&i| {
+                let d = &leaf.directions[i];
+                DirectionVectors::from_angles(deg(d.theta_s_deg), deg(d.theta_v_deg), deg(d.phi_v_deg))
+                    .map_err(|error| FitFailure(error.to_string()))
+            })
+            .collect::<Result<Vec<_>, _>>()?;
 
         let width = leaf.directions.len();
         let take = |all: &[f64]| -> Vec<f64> {
@@ -158,6 +168,7 @@ impl Selected {
             wavelengths_nm: bands.iter().map(|&band| leaf.wavelengths_nm[band]).collect(),
             theta_s_deg: kept.iter().map(|&i| leaf.directions[i].theta_s_deg).collect(),
             geometries,
+            vectors,
             used: brdf.len() - missing,
             missing,
             beyond_theta_v: bands.len() * (width - kept.len()),

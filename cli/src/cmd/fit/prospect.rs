@@ -10,7 +10,6 @@ use clap::Args;
 use leafbrdf::fit::{LeafRecord, ProspectOptions, ProspectOutcome, fit_prospect, write_records};
 use leafbrdf::output::file_name;
 use leafbrdf::spectra::{LeafSpectra, read_spectra};
-use leafbrdf_core::Normalization;
 use leafbrdf_fit::Interval;
 use leafbrdf_fit::hemispherical::{Free, default_free};
 use leafbrdf_prospect::{Error, LeafParams, Parameter, Prospect, table};
@@ -209,11 +208,11 @@ fn refuse_others(arguments: &Arguments) -> Result<(), Failure> {
         ("--sigma-bounds", arguments.sigma_bounds != Range(0.01, 1.0)),
         ("--start-n", arguments.start_n.is_some()),
         ("--start-sigma", arguments.start_sigma.is_some()),
-        ("--starts", arguments.starts != 4),
+        ("--starts", arguments.starts.is_some()),
         ("--robust", arguments.robust),
         ("--quantity", arguments.quantity.is_some()),
         ("--azimuth", arguments.azimuth.is_some()),
-        ("--normalization", Normalization::from(arguments.normalization) != Normalization::Bousquet2005),
+        ("--normalization", arguments.normalization.is_some()),
     ];
     match given.iter().find(|(_, given)| *given) {
         Some((option, _)) => Err(Failure::Usage(format!("{option} has no meaning for --model prospect: leave it out"))),
@@ -231,6 +230,7 @@ struct Input {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let options = arguments.prospect.options(arguments)?;
     refuse_others(arguments)?;
+    arguments.surface.refuse("prospect")?;
     let pool = prepare(arguments)?;
     let bar = progress_bar("leaves");
     let leaves = read(arguments);

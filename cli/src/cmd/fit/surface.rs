@@ -1,0 +1,264 @@
+//! `leafbrdf fit --model surface`, and the options that every model of a whole leaf's surface shares.
+
+use std::fs;
+use std::io::{self, Write};
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+use leafbrdf::fit::{LeafRecord, Selected, Selection, SurfaceOutcome, fit_surface, write_records};
+use leafbrdf::output::file_name;
+use leafbrdf_core::Normalization;
+use leafbrdf_fit::Interval;
+use leafbrdf_fit::surface::model::{N, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
+use leafbrdf_fit::surface::{DiffuseKind, NAMES, Prior, SurfaceOptions, Treatment};
+use rayon::prelude::*;
+
+use super::super::Failure;
+use super::{Arguments, Input, Range, prepare, progress_bar, read};
+
+/// The distribution of facets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Facets {
+    /// Beckmann facets, V-cavity masking: the paper's (Eqs 7, 9)
+    Beckmann,
+    /// GGX facets, Smith's masking: a lobe with a tail. K = 4π unless --normalization says otherwise
+    Ggx,
+}
+
+/// The shape of the diffuse term.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Diffuse {
+    /// k_L/π in every direction: the paper's (Eq. 4)
+    Lambert,
+    /// A bowl a and an asymmetry b: k_L/π (1 − a cosθ_s cosθ_v − b sinθ_s sinθ_v cosφ_v)/(1 − 2a/3)
+    P1,
+}
+
+/// The surface's options that the models of a whole leaf share.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Options of --model surface (and of models that contain it)")]
+pub struct Options {
+    /// Distribution of facets [default: beckmann]
+    #[arg(long, value_enum)]
+    facets: Option<Facets>,
+    /// Shape of the diffuse term [default: lambert]
+    #[arg(long, value_enum)]
+    diffuse: Option<Diffuse>,
+    /// The leaf may be tilted in its holder: two angles more, each N(0°, 3°) and within ±10° [default: level]
+    #[arg(long)]
+    tilt: bool,
+    /// Parameters of the surface that are held: n, sigma, p1_a, p1_b, tilt_in_plane_deg, tilt_lateral_deg
+    #[arg(long, value_name = "NAME=VALUE,…", value_delimiter = ',', allow_hyphen_values = true)]
+    hold: Vec<Hold>,
+    /// What is known beforehand, as a mean and a standard deviation, or NAME=none [default: p1_a=0.15:0.1, p1_b=0:0.1,
+    /// tilt_in_plane_deg=0:3, tilt_lateral_deg=0:3]
+    #[arg(long, value_name = "NAME=MEAN:SD,…", value_delimiter = ',', allow_hyphen_values = true)]
+    prior: Vec<PriorOf>,
+}
+
+/// NAME=VALUE.
+#[derive(Clone, Copy, Debug)]
+struct Hold(usize, f64);
+
+/// NAME=MEAN:SD or NAME=none.
+#[derive(Clone, Copy, Debug)]
+struct PriorOf(usize, Option<Prior<f64>>);
+
+fn named(text: &str) -> Result<(usize, &str), String> {
+    let (name, value) = text.split_once('=').ok_or_else(|| format!("{text:?}: expected NAME=…, such as n=1.45"))?;
+    let place = NAMES.iter().position(|known| *known == name.trim());
+    let place = place.ok_or_else(|| format!("{name:?} is no parameter: expected one of {}", NAMES.join(", ")))?;
+    Ok((place, value.trim()))
+}
+
+/// By what to multiply a number of the command line: angles are in degrees there.
+fn unit(place: usize) -> f64 {
+    if place == TILT_IN_PLANE || place == TILT_LATERAL { 1.0_f64.to_radians() } else { 1.0 }
+}
+
+impl FromStr for Hold {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (place, value) = named(text)?;
+        match value.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(Hold(place, value * unit(place))),
+            _ => Err(format!("{text:?}: expected NAME=VALUE, such as n=1.45")),
+        }
+    }
+}
+
+impl FromStr for PriorOf {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (place, value) = named(text)?;
+        if value == "none" {
+            return Ok(PriorOf(place, None));
+        }
+        let numbers = value.split_once(':').and_then(|(mean, sd)| Some((mean.parse().ok()?, sd.parse().ok()?)));
+        match numbers {
+            Some((mean, sd)) if f64::is_finite(mean) && sd > 0.0 && f64::is_finite(sd) => {
+                Ok(PriorOf(place, Some(Prior { mean: mean * unit(place), sd: sd * unit(place) })))
+            }
+            _ => Err(format!("{text:?}: expected NAME=MEAN:SD with SD > 0, such as n=1.48:0.03, or NAME=none")),
+        }
+    }
+}
+
+impl Options {
+    /// For models without these options: none of them must be there.
+    pub fn refuse(&self, model: &str) -> Result<(), Failure> {
+        let given = [
+            ("--facets", self.facets.is_some()),
+            ("--diffuse", self.diffuse.is_some()),
+            ("--tilt", self.tilt),
+            ("--hold", !self.hold.is_empty()),
+            ("--prior", !self.prior.is_empty()),
+        ];
+        match given.iter().find(|(_, given)| *given) {
+            Some((option, _)) => {
+                Err(Failure::Usage(format!("{option} has no meaning for --model {model}: try --model surface")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The surface as asked for, over `preset` (what the model takes where nothing is said).
+    pub fn surface(&self, arguments: &Arguments, preset: SurfaceOptions) -> Result<SurfaceOptions, Failure> {
+        let mut options = preset;
+        match self.facets {
+            Some(Facets::Ggx) => options = options.with_ggx(),
+            Some(Facets::Beckmann) => options = options.with_beckmann(),
+            None => {}
+        }
+        match self.diffuse {
+            Some(Diffuse::P1) => options = options.with_p1(),
+            Some(Diffuse::Lambert) => options = options.with_lambert(),
+            None => {}
+        }
+        if self.tilt {
+            options = options.with_tilt();
+        }
+        if let Some(name) = arguments.normalization {
+            options.normalization = Normalization::from(name);
+        }
+        for (place, range) in [(N, arguments.n_bounds), (SIGMA, arguments.sigma_bounds)] {
+            let Range(lower, upper) = range;
+            options.parameters[place] = Treatment::Free { bounds: Interval::new(lower, upper), prior: None };
+        }
+        for PriorOf(place, wanted) in &self.prior {
+            match &mut options.parameters[*place] {
+                Treatment::Free { prior, .. } => *prior = *wanted,
+                Treatment::Held(_) => return Err(absent("--prior", *place)),
+            }
+        }
+        for Hold(place, value) in &self.hold {
+            let has = match *place {
+                N | SIGMA | TILT_IN_PLANE | TILT_LATERAL => true,
+                _ => options.diffuse == DiffuseKind::P1,
+            };
+            if !has {
+                return Err(absent("--hold", *place));
+            }
+            options.parameters[*place] = Treatment::Held(*value);
+        }
+        options.robust = arguments.robust;
+        options.valleys = usize::from(arguments.starts.unwrap_or(8));
+        if arguments.start_n.is_some() || arguments.start_sigma.is_some() {
+            let mut start = [0.0; 6];
+            start[N] = arguments.start_n.unwrap_or(1.47);
+            start[SIGMA] = arguments.start_sigma.unwrap_or(0.3);
+            options.starts.push(start);
+        }
+        options.check().map_err(|error| Failure::Usage(error.to_string()))?;
+        Ok(options)
+    }
+}
+
+fn absent(option: &str, place: usize) -> Failure {
+    let remedy = match place {
+        TILT_IN_PLANE | TILT_LATERAL => "add --tilt",
+        _ => "add --diffuse p1",
+    };
+    Failure::Usage(format!("{option} {}: the model has no such free parameter; {remedy}", NAMES[place]))
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    arguments.check_starts()?;
+    arguments.prospect.refuse()?;
+    let options = arguments.surface.surface(arguments, SurfaceOptions::paper())?;
+    let pool = prepare(arguments)?;
+    let bar = progress_bar("leaves");
+    let leaves = read(arguments);
+    let several = leaves.len() > 1;
+    bar.set_length(leaves.len() as u64);
+
+    let results: Vec<Result<SurfaceOutcome, String>> = pool.install(|| {
+        leaves
+            .par_iter()
+            .map(|leaf| {
+                let result = one_leaf(leaf, arguments, &options, several);
+                bar.inc(1);
+                result
+            })
+            .collect()
+    });
+    bar.finish_and_clear();
+
+    let values =
+        |result: &Result<SurfaceOutcome, String>| result.as_ref().map(SurfaceOutcome::values).map_err(Clone::clone);
+    let records: Vec<LeafRecord> =
+        leaves.iter().zip(&results).map(|(leaf, r)| (leaf.name.clone(), leaf.file.clone(), values(r))).collect();
+    write_records(&arguments.output, "surface", Some(options.normalization.name()), &records)
+        .map_err(|error| Failure::writing(Some(&arguments.output.join("leaves.csv")), &error))?;
+    report(&leaves, &results)
+}
+
+fn one_leaf(
+    input: &Input,
+    arguments: &Arguments,
+    options: &SurfaceOptions,
+    several: bool,
+) -> Result<SurfaceOutcome, String> {
+    let data = input.data.as_ref().map_err(Clone::clone)?;
+    let words = |failure: &dyn std::fmt::Display| format!("{}: leaf {}: {failure}", input.file, input.name);
+    let selection = Selection {
+        wavelengths: arguments.wavelengths,
+        max_theta_v_deg: arguments.max_theta_v,
+        use_sd: !arguments.ignore_sd,
+    };
+    let selected = Selected::new(data, &selection).map_err(|failure| words(&failure))?;
+    let Range(lower, upper) = arguments.k_l_bounds;
+    let outcome =
+        fit_surface(data, selected, options, Interval::new(lower, upper)).map_err(|failure| words(&failure))?;
+    let folder = if several { arguments.output.join(file_name(&input.name)) } else { arguments.output.clone() };
+    fs::create_dir_all(&folder)
+        .and_then(|()| outcome.write_tables(&folder))
+        .and_then(|()| outcome.write_summary(&folder, data, &input.file))
+        .map_err(|error| format!("{}: cannot be written: {error}", folder.display()))?;
+    Ok(outcome)
+}
+
+/// Results, warnings and failures on standard error; failure of the command where a leaf has failed.
+fn report(leaves: &[Input], results: &[Result<SurfaceOutcome, String>]) -> Result<(), Failure> {
+    let mut errors = io::stderr().lock();
+    let mut failed = 0;
+    for (leaf, result) in leaves.iter().zip(results) {
+        // Messages are a courtesy: where standard error is closed, the files are what was asked for.
+        let _ = match result {
+            Ok(outcome) => {
+                let _ = writeln!(errors, "{}: {}", leaf.name, outcome.line());
+                outcome.warnings.iter().try_for_each(|warning| writeln!(errors, "warning: {}: {warning}", leaf.name))
+            }
+            Err(sentence) => {
+                failed += 1;
+                writeln!(errors, "error: {sentence}")
+            }
+        };
+    }
+    match failed {
+        0 => Ok(()),
+        _ => Err(Failure::Failed(format!("{failed} of {} leaves failed, the others are done", leaves.len()))),
+    }
+}

@@ -1,0 +1,273 @@
+//! `--model surface`: one n and σ for the leaf (with options: a tilt, the diffuse term's a and b), k_L at each wavelength, and the
+//! hemispherical budget that follows.
+
+mod summary;
+
+use std::io;
+use std::path::Path;
+
+use leafbrdf_core::{Angle, DhrfGradient, Diffuse, DomainError, Grade, Illumination, Normalization, P1, Surface};
+use leafbrdf_fit::surface::model::{DIFFUSE_A, DIFFUSE_B, N, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
+use leafbrdf_fit::surface::{DiffuseKind, FacetKind, Knowledge, SurfaceData, SurfaceFit, SurfaceOptions, Treatment};
+use leafbrdf_fit::{AtBound, Interval};
+
+use super::{FitFailure, LeafValues, Selected};
+use crate::measurement::Measurement;
+use crate::output::{Cell, Format, TableWriter};
+
+/// One leaf's surface, fitted.
+#[derive(Clone, Debug)]
+pub struct SurfaceOutcome {
+    /// What was fitted.
+    pub selected: Selected,
+    /// The result.
+    pub fit: SurfaceFit,
+    /// How.
+    pub options: SurfaceOptions,
+    /// What the user should know before using the numbers.
+    pub warnings: Vec<String>,
+    /// Between which k_L counts as plausible (Table 3); nothing is held there.
+    k_l_bounds: Interval<f64>,
+    /// DHRF_spec, its standard error, and the diffuse term's DHRF for k_L = 1, at every source angle.
+    dhrf: Vec<Dhrf>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Dhrf {
+    theta_s_deg: f64,
+    specular: f64,
+    specular_se: f64,
+    diffuse: f64,
+}
+
+/// Fits one surface to the selected data.
+///
+/// `k_l_bounds`: between which values k_L is plausible; k_L outside are counted and told, not held.
+///
+/// # Errors
+/// What the solver refuses, in words.
+pub fn fit_surface(
+    leaf: &Measurement,
+    selected: Selected,
+    options: &SurfaceOptions,
+    k_l_bounds: Interval<f64>,
+) -> Result<SurfaceOutcome, FitFailure> {
+    let data = SurfaceData { directions: &selected.vectors, brdf: &selected.brdf, sd: selected.sd.as_deref() };
+    let fit = leafbrdf_fit::surface::fit_surface(&data, options)?;
+    let sources = selected.sources_deg();
+    let dhrf = sources.into_iter().map(|theta| dhrf(&fit, options, theta)).collect::<Result<_, _>>();
+    let dhrf = dhrf.map_err(|error: DomainError| FitFailure(error.to_string()))?;
+    let mut outcome =
+        SurfaceOutcome { selected, fit, options: options.clone(), warnings: Vec::new(), k_l_bounds, dhrf };
+    outcome.warnings = outcome.warn(leaf);
+    Ok(outcome)
+}
+
+/// DHRF_spec of the leaf's own surface at θ_s from the leaf's normal: a tilt in the holder has no part in it.
+fn dhrf(fit: &SurfaceFit, options: &SurfaceOptions, theta_s_deg: f64) -> Result<Dhrf, DomainError> {
+    let angle = Angle::from_degrees(theta_s_deg);
+    let source = Illumination::new(angle)?;
+    let [n, sigma, a, b, ..] = fit.x;
+    let gradient = match options.facets {
+        FacetKind::Beckmann => {
+            Surface::new(n, sigma)?.with_normalization(options.normalization).dhrf_with_gradient(&source, Grade::E10)
+        }
+        // its hemispherical integral is not there yet: empty cells rather than another surface's
+        FacetKind::Ggx => DhrfGradient { value: f64::NAN, d_n: f64::NAN, d_sigma: f64::NAN },
+    };
+    let diffuse = match options.diffuse {
+        DiffuseKind::Lambert => 1.0,
+        DiffuseKind::P1 => P1::new(a, b)?.hemispherical(angle.cos()),
+    };
+    // first-order propagation; a parameter held, or at its bound, adds nothing, one without an error leaves none to give
+    let errors = &fit.errors;
+    let unknown = [N, SIGMA].iter().any(|&i| errors.standard_errors[i].is_none() && is_open(fit, i));
+    let c = &errors.covariance;
+    let variance = gradient.d_n * (gradient.d_n * c[N][N] + 2.0 * gradient.d_sigma * c[N][SIGMA])
+        + gradient.d_sigma * gradient.d_sigma * c[SIGMA][SIGMA];
+    let specular_se = if unknown { f64::NAN } else { variance.max(0.0).sqrt() };
+    Ok(Dhrf { theta_s_deg, specular: gradient.value, specular_se, diffuse })
+}
+
+/// Is a parameter sought, and not at a bound?
+fn is_open(fit: &SurfaceFit, i: usize) -> bool {
+    fit.parameters[i].is_free() && fit.at_bound[i] == AtBound::Free
+}
+
+/// Names of n, σ, a, b, t_x, t_y in files, and by what to multiply them there: angles are in degrees.
+const PARAMETERS: [(&str, f64); 6] = [
+    ("n", 1.0),
+    ("sigma", 1.0),
+    ("p1_a", 1.0),
+    ("p1_b", 1.0),
+    ("tilt_in_plane_deg", 180.0 / core::f64::consts::PI),
+    ("tilt_lateral_deg", 180.0 / core::f64::consts::PI),
+];
+
+impl SurfaceOutcome {
+    /// Has the model this parameter: n and σ always, a and b of P1, a tilt that was asked for or held elsewhere than at 0?
+    fn has(&self, i: usize) -> bool {
+        match i {
+            N | SIGMA => true,
+            DIFFUSE_A | DIFFUSE_B => self.options.diffuse == DiffuseKind::P1,
+            _ => self.options.parameters[i] != Treatment::Held(0.0),
+        }
+    }
+
+    /// Its value in the unit of files; `None` where the model has no such parameter, or cannot see it.
+    fn value(&self, i: usize) -> Option<f64> {
+        (self.has(i) && !self.fit.unseen[i]).then(|| self.fit.x[i] * PARAMETERS[i].1)
+    }
+
+    fn standard_error(&self, i: usize) -> Option<f64> {
+        self.fit.errors.standard_errors[i].map(|error| error * PARAMETERS[i].1)
+    }
+
+    /// Wavelengths that have any value.
+    fn fitted(&self) -> usize {
+        self.fit.bands.iter().filter(|band| band.k_lambert.is_some()).count()
+    }
+
+    /// The leaf's row of `leaves.csv`.
+    pub fn values(&self) -> LeafValues {
+        LeafValues {
+            normalization: Some(self.options.normalization.name().to_string()),
+            n: self.value(N),
+            sigma: self.value(SIGMA),
+            tilt_deg: [self.value(TILT_IN_PLANE), self.value(TILT_LATERAL)],
+            surface_se: [N, SIGMA, TILT_IN_PLANE, TILT_LATERAL].map(|i| self.standard_error(i)),
+            p1: [self.value(DIFFUSE_A), self.value(DIFFUSE_B)],
+            p1_se: [self.standard_error(DIFFUSE_A), self.standard_error(DIFFUSE_B)],
+            kinds: Some([self.options.facets.name(), self.options.diffuse.name()]),
+            rmse: self.fit.rmse,
+            r2: self.fit.r2,
+            bands: self.fitted(),
+            warnings: self.warnings.clone(),
+            ..LeafValues::default()
+        }
+    }
+
+    /// One line for people.
+    pub fn line(&self) -> String {
+        let numbers: Vec<String> = (0..PARAMETERS.len())
+            .filter_map(|i| {
+                let error = self.standard_error(i).map_or(String::new(), |error| format!(" ± {error:.1e}"));
+                Some(format!("{} {:.4}{error}", PARAMETERS[i].0, self.value(i)?))
+            })
+            .collect();
+        format!(
+            "{} bands, {}, rmse {:.3e} sr^-1, R2 {:.4}",
+            self.fitted(),
+            numbers.join(", "),
+            self.fit.rmse,
+            self.fit.r2
+        )
+    }
+
+    /// `sigma=upper;n=lower`, or nothing.
+    fn at_bound(&self) -> String {
+        let places = PARAMETERS.iter().zip(self.fit.at_bound).filter_map(|((name, _), at)| match at {
+            AtBound::Free => None,
+            AtBound::Lower => Some(format!("{name}=lower")),
+            AtBound::Upper => Some(format!("{name}=upper")),
+        });
+        places.collect::<Vec<_>>().join(";")
+    }
+
+    /// Why standard errors are missing, parameter by parameter, or nothing.
+    fn note(&self) -> String {
+        let reasons = (0..PARAMETERS.len()).filter(|&i| self.has(i)).filter_map(|i| {
+            let why = match self.fit.errors.knowledge[i] {
+                Knowledge::Identified => return None,
+                Knowledge::Held => "held",
+                Knowledge::AtBound => "held at its bound",
+                Knowledge::NotIdentifiable => "not identifiable from these directions",
+                Knowledge::NoDegreesOfFreedom => "no more directions than parameters",
+            };
+            Some(format!("{} {why}", PARAMETERS[i].0))
+        });
+        reasons.collect::<Vec<_>>().join("; ")
+    }
+
+    /// Writes `bands.csv` and `dhrf.csv` into a folder, each whole or not at all.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn write_tables(&self, folder: &Path) -> io::Result<()> {
+        let columns = [
+            "wavelength_nm",
+            "k_l",
+            "n",
+            "sigma",
+            "rmse",
+            "n_obs",
+            "status",
+            "at_bound",
+            "k_l_se",
+            "n_se",
+            "sigma_se",
+            "p1_a",
+            "p1_b",
+            "tilt_in_plane_deg",
+            "tilt_lateral_deg",
+            "facets",
+            "diffuse",
+            "note",
+            "normalization",
+        ];
+        let mut table = TableWriter::create(Some(&folder.join("bands.csv")), Some(Format::Csv), &columns)?;
+        let (at_bound, note) = (self.at_bound(), self.note());
+        let converged = if self.fit.termination.converged() { "converged" } else { "max_iterations" };
+        let words = [self.options.facets.name(), self.options.diffuse.name(), &note, self.options.normalization.name()];
+        for (wavelength, band) in self.selected.wavelengths_nm.iter().zip(&self.fit.bands) {
+            let fitted = band.k_lambert.is_some();
+            let mut row = vec![Cell::Number(*wavelength), optional(band.k_lambert)];
+            row.extend([N, SIGMA].map(|i| optional(self.value(i).filter(|_| fitted))));
+            row.push(optional(fitted.then(|| (band.squares / band.n_obs as f64).sqrt())));
+            row.push(Cell::Count(band.n_obs as u64));
+            row.extend([Cell::Text(if fitted { converged } else { "too_few_values" }), Cell::Text(&at_bound)]);
+            row.push(optional(band.k_lambert_se));
+            row.extend([N, SIGMA].map(|i| optional(self.standard_error(i).filter(|_| fitted))));
+            row.extend([DIFFUSE_A, DIFFUSE_B, TILT_IN_PLANE, TILT_LATERAL].map(|i| optional(self.value(i))));
+            row.extend(words.map(Cell::Text));
+            table.row(&row)?;
+        }
+        table.finish()?;
+
+        let columns = [
+            "wavelength_nm",
+            "theta_s_deg",
+            "dhrf_diffuse",
+            "dhrf_specular",
+            "dhrf",
+            "dhrf_specular_se",
+            "specular_share",
+            "normalization",
+        ];
+        let mut table = TableWriter::create(Some(&folder.join("dhrf.csv")), Some(Format::Csv), &columns)?;
+        for (wavelength, band) in self.selected.wavelengths_nm.iter().zip(&self.fit.bands) {
+            for row in &self.dhrf {
+                let diffuse = band.k_lambert.map_or(f64::NAN, |k_l| k_l * row.diffuse);
+                let total = diffuse + row.specular;
+                let numbers =
+                    [*wavelength, row.theta_s_deg, diffuse, row.specular, total, row.specular_se, row.specular / total];
+                let mut cells: Vec<Cell<'_>> = numbers.map(Cell::Number).to_vec();
+                cells.push(Cell::Text(self.options.normalization.name()));
+                table.row(&cells)?;
+            }
+        }
+        table.finish()
+    }
+}
+
+fn optional(number: Option<f64>) -> Cell<'static> {
+    number.map_or(Cell::Empty, Cell::Number)
+}
+
+/// How K is written out.
+fn constant(normalization: Normalization) -> &'static str {
+    match normalization {
+        Normalization::Bousquet2005 => "2 pi^2 (Eq. 10 as printed)",
+        Normalization::CookTorrance => "4 pi (as derived from Eqs 5, 6, 9)",
+    }
+}
