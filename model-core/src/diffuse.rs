@@ -3,7 +3,9 @@
 use crate::{Geometry, Real};
 
 mod p1;
+mod p2;
 pub use p1::P1;
+pub use p2::P2;
 
 /// The shape of a diffuse term and its exact derivatives, in sr⁻¹; those by the cosines hold θ_a, as a tilt of the leaf does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +16,8 @@ pub struct DiffuseSlopes<T> {
     pub d_a: T,
     /// ∂/∂b of [`P1`]; 0 for Lambert's term.
     pub d_b: T,
+    /// ∂/∂e of [`P2`]; for the other terms 0.
+    pub d_e: T,
     /// ∂/∂cosθ_s.
     pub d_cos_theta_s: T,
     /// ∂/∂cosθ_v.
@@ -48,6 +52,7 @@ impl<T: Real> Diffuse<T> for Lambert {
             value: self.shape(geometry),
             d_a: T::ZERO,
             d_b: T::ZERO,
+            d_e: T::ZERO,
             d_cos_theta_s: T::ZERO,
             d_cos_theta_v: T::ZERO,
         }
@@ -57,4 +62,9 @@ impl<T: Real> Diffuse<T> for Lambert {
     fn hemispherical(self, _cos_theta_s: T) -> T {
         T::ONE
     }
+}
+
+#[inline(always)]
+fn two_thirds<T: Real>() -> T {
+    T::lit(2.0 / 3.0)
 }

@@ -1,6 +1,6 @@
 //! A diffuse term with a bowl: the first two reciprocal polynomials in the directions.
 
-use super::{Diffuse, DiffuseSlopes};
+use super::{Diffuse, DiffuseSlopes, two_thirds};
 use crate::{DomainError, Geometry, Real};
 
 /// BRDF_diff = k_L/π · (1 − a cosθ_s cosθ_v − b sinθ_s sinθ_v cosφ_v)/N with N = 1 − 2a/3.
@@ -66,11 +66,6 @@ impl<T: Real> P1<T> {
     }
 }
 
-#[inline(always)]
-fn two_thirds<T: Real>() -> T {
-    T::lit(2.0 / 3.0)
-}
-
 impl<T: Real> Diffuse<T> for P1<T> {
     #[inline(always)]
     fn shape(self, geometry: &Geometry<T>) -> T {
@@ -93,6 +88,7 @@ impl<T: Real> Diffuse<T> for P1<T> {
             value,
             d_a: two_thirds::<T>() * value * self.inverse_norm - cos_cos * scale,
             d_b: -(lean * scale),
+            d_e: T::ZERO,
             d_cos_theta_s: steepness * cos_v,
             d_cos_theta_v: steepness * cos_s,
         }

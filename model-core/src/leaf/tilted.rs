@@ -24,6 +24,8 @@ pub struct TiltedLeafGradient<T> {
     pub d_a: T,
     /// ∂/∂b, likewise.
     pub d_b: T,
+    /// ∂/∂e of [`P2`](crate::P2); 0 for the other terms.
+    pub d_e: T,
     /// ∂/∂t_x, sr⁻¹ rad⁻¹.
     pub d_in_plane: T,
     /// ∂/∂t_y, sr⁻¹ rad⁻¹.
@@ -39,6 +41,8 @@ pub struct TiltedDiffuseGradient<T> {
     pub d_a: T,
     /// ∂/∂b.
     pub d_b: T,
+    /// ∂/∂e.
+    pub d_e: T,
     /// ∂/∂t_x, sr⁻¹ rad⁻¹.
     pub d_in_plane: T,
     /// ∂/∂t_y, sr⁻¹ rad⁻¹.
@@ -49,7 +53,7 @@ impl<T: Real> Tilted<T> {
     /// cosθ_s'/cosθ_s · shape of a diffuse term about the tilted normal, sr⁻¹, with its exact derivatives.
     #[inline(always)]
     pub fn diffuse_with_gradient(&self, diffuse: impl Diffuse<T>) -> TiltedDiffuseGradient<T> {
-        let DiffuseSlopes { value, d_a, d_b, d_cos_theta_s, d_cos_theta_v } =
+        let DiffuseSlopes { value, d_a, d_b, d_e, d_cos_theta_s, d_cos_theta_v } =
             diffuse.shape_with_slopes(self.geometry());
         let factor = self.factor();
         let (x, y) = (self.d_in_plane(), self.d_lateral());
@@ -57,6 +61,7 @@ impl<T: Real> Tilted<T> {
             value: factor * value,
             d_a: factor * d_a,
             d_b: factor * d_b,
+            d_e: factor * d_e,
             d_in_plane: factor * (d_cos_theta_s * x.cos_theta_s + d_cos_theta_v * x.cos_theta_v) + x.factor * value,
             d_lateral: factor * (d_cos_theta_s * y.cos_theta_s + d_cos_theta_v * y.cos_theta_v) + y.factor * value,
         }
@@ -84,6 +89,7 @@ impl<T: Real, I: Index<T>, D: Facets<T>, G: Masking<T>, L: Diffuse<T>> Leaf<T, I
             d_sigma,
             d_a: k * shape.d_a,
             d_b: k * shape.d_b,
+            d_e: k * shape.d_e,
             d_in_plane: k * shape.d_in_plane + d_in_plane,
             d_lateral: k * shape.d_lateral + d_lateral,
         }
