@@ -7,6 +7,7 @@ extern crate std;
 mod angle;
 mod dhrf;
 pub mod diffuse;
+mod direct;
 mod error;
 pub mod facet;
 pub mod fresnel;

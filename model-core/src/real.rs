@@ -4,18 +4,23 @@
 //! |---|---|---|
 //! | `f64`, `f32` | the standard library | `std` |
 //! | `f64`, `f32` | the `libm` crate, where `std` is off | `libm` |
-//! | [`Portable<f64>`](Portable), [`Portable<f32>`](Portable) | plain arithmetic for `exp` and `ln` (same bits on every machine, vectorises) | either |
+//! | [`Portable<f64>`](Portable), [`Portable<f32>`](Portable) | plain arithmetic for `exp` and `ln` (vectorises; in `f32` same bits on every machine) | either |
+//! | [`device::F32`] | own, in integers; the hardware's square root: for microcontrollers, same bits everywhere | none |
 //! | `micromath::F32` | the `micromath` crate: rough | `micromath` |
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
+pub mod device;
+pub(crate) mod fixed;
 #[cfg(all(feature = "libm", not(feature = "std")))]
 mod libm;
 #[cfg(feature = "micromath")]
 pub mod micromath;
 #[cfg(any(feature = "std", feature = "libm"))]
 mod portable;
+mod root;
+mod single;
 #[cfg(feature = "std")]
 mod std;
 

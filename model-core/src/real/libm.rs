@@ -1,6 +1,9 @@
 //! `f32` and `f64` with the `libm` crate, for targets without the standard library.
+//!
+//! Not every function of `f32` is the crate's: there `sinf`, `cosf`, `tanf` and `asinf` compute in `f64` (1,180 instructions each on
+//! a Cortex-M4F) and `sqrtf` does not use the hardware's root. Ours do not, and do.
 
-use super::Real;
+use super::{Real, fixed, root, single};
 
 impl Real for f64 {
     const ZERO: f64 = 0.0;
@@ -68,7 +71,7 @@ impl Real for f32 {
     }
     #[inline(always)]
     fn sqrt(self) -> f32 {
-        libm::sqrtf(self)
+        root::sqrt(self)
     }
     #[inline(always)]
     fn exp(self) -> f32 {
@@ -80,15 +83,16 @@ impl Real for f32 {
     }
     #[inline(always)]
     fn sin_cos(self) -> (f32, f32) {
-        libm::sincosf(self)
+        fixed::sin_cos(self)
     }
     #[inline(always)]
     fn tan(self) -> f32 {
-        libm::tanf(self)
+        let (sin, cos) = fixed::sin_cos(self);
+        sin / cos
     }
     #[inline(always)]
     fn asin(self) -> f32 {
-        libm::asinf(self)
+        single::asin(self)
     }
     #[inline(always)]
     fn abs(self) -> f32 {

@@ -7,7 +7,7 @@
 
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use super::Real;
+use super::{Real, fixed, single};
 
 /// An `f32` or `f64` whose `exp` and `ln` are plain, branch-free arithmetic.
 ///
@@ -191,35 +191,6 @@ fn ln_f64(x: f64) -> f64 {
     if x < f64::INFINITY { y } else { x }
 }
 
-/// ln x in single precision; the same steps, the series to z⁵.
-#[inline(always)]
-fn ln_f32(x: f32) -> f32 {
-    const LN2_HI: f32 = f32::from_bits(0x3F31_7200);
-    const LN2_LO: f32 = 1.428_606_8e-6;
-    const SQRT_HALF: u32 = 0x3F35_04F3;
-    let bits = x.to_bits();
-    let shifted = bits.wrapping_sub(SQRT_HALF);
-    let m = f32::from_bits((shifted & 0x007F_FFFF).wrapping_add(SQRT_HALF));
-    let biased = (shifted >> 23) & 0x1FF;
-    let signed = (biased ^ 0x100).wrapping_sub(0x100);
-    let k = f32::from_bits(ROUND_F32.to_bits().wrapping_add(signed)) - ROUND_F32;
-
-    let f = m - 1.0;
-    let s = f / (2.0 + f);
-    let z = s * s;
-    let mut p = 2.0 / 11.0;
-    p = p * z + 2.0 / 9.0;
-    p = p * z + 2.0 / 7.0;
-    p = p * z + 2.0 / 5.0;
-    p = p * z + 2.0 / 3.0;
-    p *= z;
-    let half_f2 = 0.5 * f * f;
-    let y = k * LN2_HI + (f - (half_f2 - (s * (half_f2 + p) + k * LN2_LO)));
-    let y = if x > 0.0 { y } else { f32::NAN };
-    let y = if x == 0.0 { f32::NEG_INFINITY } else { y };
-    if x < f32::INFINITY { y } else { x }
-}
-
 impl Real for Portable<f64> {
     const ZERO: Self = Portable(0.0);
     const HALF: Self = Portable(0.5);
@@ -295,20 +266,21 @@ impl Real for Portable<f32> {
     }
     #[inline(always)]
     fn ln(self) -> Self {
-        Portable(ln_f32(self.0))
+        Portable(single::ln(self.0))
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = Real::sin_cos(self.0);
+        let (sin, cos) = fixed::sin_cos(self.0);
         (Portable(sin), Portable(cos))
     }
     #[inline(always)]
     fn tan(self) -> Self {
-        Portable(Real::tan(self.0))
+        let (sin, cos) = self.sin_cos();
+        sin / cos
     }
     #[inline(always)]
     fn asin(self) -> Self {
-        Portable(Real::asin(self.0))
+        Portable(single::asin(self.0))
     }
     #[inline(always)]
     fn abs(self) -> Self {
