@@ -12,6 +12,7 @@ mod leaf;
 mod list;
 mod model;
 mod normalization;
+mod plot;
 mod prospect;
 mod simulate;
 mod version;
@@ -39,6 +40,7 @@ pub enum Command {
     Leaf(leaf::Arguments),
     Simulate(Box<simulate::Arguments>),
     Fit(fit::Arguments),
+    Plot(plot::Arguments),
     Convert(convert::Arguments),
     Demo(demo::Arguments),
     Completions(completions::Arguments),
@@ -54,6 +56,7 @@ impl Command {
             Command::Leaf(arguments) => leaf::run(&arguments),
             Command::Simulate(arguments) => simulate::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),
+            Command::Plot(arguments) => plot::run(&arguments),
             Command::Convert(arguments) => convert::run(&arguments),
             Command::Demo(arguments) => demo::run(&arguments),
             Command::Completions(arguments) => completions::run(&arguments),

@@ -5,6 +5,7 @@ pub mod fit;
 pub mod hemisphere;
 pub mod measurement;
 pub mod output;
+pub mod plot;
 pub mod points;
 pub mod simulate;
 pub mod spectra;

@@ -1,0 +1,303 @@
+//! Which figures a fit has.
+
+use super::hemisphere_map::{Column, Dot, hemisphere_map};
+use super::principal_plane::{Cut, OUT_OF_PLANE_DEG, principal_plane};
+use super::results::{BandModel, Results};
+use super::svg::literal;
+use super::valley::{Band, valley};
+use super::{PlotError, PlotOptions, dhrf, scatter, spectra};
+use crate::measurement::Measurement;
+
+/// One figure.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// Its file name without extension.
+    pub name: &'static str,
+    /// What it shows, for a caption.
+    pub caption: String,
+    /// The document.
+    pub svg: String,
+}
+
+/// Figures, and why others are missing.
+#[derive(Clone, Debug, Default)]
+pub struct Made {
+    /// In the order of the paper.
+    pub figures: Vec<Figure>,
+    /// A sentence for each that is missing.
+    pub left_out: Vec<String>,
+}
+
+impl Made {
+    fn add(&mut self, leaf: &str, name: &'static str, caption: String, svg: Result<String, String>) {
+        match svg {
+            Ok(svg) => self.figures.push(Figure { name, caption, svg }),
+            Err(why) => self.left_out.push(format!("{leaf}: {name} is left out: {why}")),
+        }
+    }
+}
+
+/// Wavelength where chlorophyll absorbs most: the paper's Fig. 2, nm.
+const RED_NM: f64 = 680.0;
+
+/// The measured values of one band and source.
+fn dots(measurement: &Measurement, nm: f64, theta_s_deg: f64, limit: f64) -> Vec<Dot> {
+    let Some(band) = measurement.wavelengths_nm.iter().position(|other| *other == nm) else { return Vec::new() };
+    let brdf = measurement.brdf();
+    let values = brdf.iter().skip(band * measurement.directions.len()).zip(&measurement.directions);
+    let of_source = values.filter(|(_, d)| d.theta_s_deg == theta_s_deg);
+    let dot = |(value, d): (&f64, &crate::measurement::Direction)| Dot {
+        theta_v_deg: d.theta_v_deg,
+        phi_v_deg: d.phi_v_deg,
+        brdf: *value,
+        fitted: d.theta_v_deg <= limit,
+    };
+    of_source.map(dot).collect()
+}
+
+/// The distinct θ_s, ascending.
+fn sources(measurement: &Measurement) -> Vec<f64> {
+    let mut sources: Vec<f64> = measurement.directions.iter().map(|d| d.theta_s_deg).collect();
+    sources.sort_by(f64::total_cmp);
+    sources.dedup();
+    sources
+}
+
+/// A column of maps of one leaf.
+fn column<'a>(
+    results: &Results,
+    measurement: &Measurement,
+    band: usize,
+    theta_s_deg: f64,
+    heading: String,
+) -> Result<Column<'a>, PlotError> {
+    let nm = results.bands.as_ref().map_or(f64::NAN, |bands| bands.wavelengths_nm[band]);
+    let model: BandModel = results.model_at(band)?;
+    Ok(Column {
+        heading,
+        theta_s_deg,
+        dots: dots(measurement, nm, theta_s_deg, results.max_theta_v_deg()),
+        model: Some(Box::new(move |theta_v, phi_v| model.brdf(theta_s_deg, theta_v, phi_v))),
+    })
+}
+
+const TOO_FEW: &str = "its directions span no part of the hemisphere";
+
+/// Every figure of one leaf.
+///
+/// # Errors
+/// Files that `fit` did not write.
+pub fn figures_of_leaf(
+    results: &Results,
+    measurement: Option<&Measurement>,
+    options: &PlotOptions,
+) -> Result<Made, PlotError> {
+    let mut made = Made::default();
+    if let Some(measurement) = measurement {
+        maps(&mut made, results, measurement, options)?;
+    }
+    let leaf = results.leaf.as_str();
+    let shown = literal(leaf);
+    if let Some(bands) = &results.bands {
+        let title = format!("{shown}: k_L, n and σ against wavelength");
+        let note = format!("shaded: ± one standard error; {}", convention(results));
+        let caption = "Lambert coefficient, refractive index and roughness, band by band (as Fig. 4)".to_string();
+        made.add(leaf, "parameters", caption, spectra::parameters(&format!("{leaf}-parameters"), &title, &note, bands));
+    }
+    if let Some(measurement) = measurement {
+        density(&mut made, results, measurement)?;
+    }
+    if let Some(table) = &results.dhrf {
+        let title = format!("{shown}: where the reflected light comes from");
+        let note = format!("DHRF = k_L + DHRF_{{spec}}(θ_s), Eqs 12–14; {}", convention(results));
+        let caption =
+            "Diffuse and specular DHRF for each source (as Fig. 6), and the share that never entered the leaf";
+        made.add(leaf, "dhrf", caption.to_string(), dhrf::dhrf(&format!("{leaf}-dhrf"), &title, &note, table));
+    }
+    if let Some(table) = &results.spectrum {
+        let version = results.summary.get("prospect").and_then(serde_json::Value::as_str).unwrap_or("");
+        let title = format!("{shown}: measured spectra and PROSPECT-{version}");
+        let caption = format!("Hemispherical reflectance and transmittance with the PROSPECT-{version} fit");
+        let svg = spectra::hemispherical(&format!("{leaf}-spectrum"), &title, "difference: measured − modelled", table);
+        made.add(leaf, "spectrum", caption, svg);
+    }
+    if let Some(measurement) = measurement {
+        cuts(&mut made, results, measurement)?;
+    }
+    Ok(made)
+}
+
+fn convention(results: &Results) -> &'static str {
+    match results.normalization() {
+        leafbrdf_core::Normalization::Bousquet2005 => "n belongs to K = 2π² (Eq. 10 as printed)",
+        leafbrdf_core::Normalization::CookTorrance => "n belongs to K = 4π (as derived)",
+    }
+}
+
+const MAP_NOTE: &str =
+    "equal-area disc: middle θ_v = 0°, rim 90°; measured values are interpolated between the directions";
+
+/// Hemisphere maps over wavelengths and over sources.
+fn maps(made: &mut Made, results: &Results, measurement: &Measurement, options: &PlotOptions) -> Result<(), PlotError> {
+    let Some(bands) = &results.bands else { return Ok(()) };
+    let leaf = results.leaf.as_str();
+    let shown = literal(leaf);
+    let sources = sources(measurement);
+    let widest = sources.last().copied().unwrap_or(0.0);
+    let mut chosen: Vec<usize> = options.wavelengths_nm.iter().filter_map(|nm| bands.nearest(*nm)).collect();
+    chosen.dedup();
+    let columns = chosen
+        .iter()
+        .map(|&band| column(results, measurement, band, widest, format!("{} nm", bands.wavelengths_nm[band])))
+        .collect::<Result<Vec<_>, _>>()?;
+    let title = format!("{shown}: BRDF over the hemisphere, θ_s = {widest}°");
+    let map = hemisphere_map(&format!("{leaf}-wavelengths"), &title, MAP_NOTE, &columns);
+    let caption = format!("BRDF at θs = {widest}° for chosen wavelengths, measured and modelled (as Fig. 1)");
+    made.add(leaf, "hemisphere-wavelengths", caption, map.ok_or_else(|| TOO_FEW.to_string()));
+
+    let Some(band) = bands.nearest(RED_NM) else { return Ok(()) };
+    let nm = bands.wavelengths_nm[band];
+    // the paper has four sources; of more, four from the least to the widest
+    let some: Vec<f64> = match sources.len() {
+        0..=4 => sources,
+        count => (0..4).map(|i| sources[i * (count - 1) / 3]).collect(),
+    };
+    let columns = some
+        .iter()
+        .map(|&theta_s| column(results, measurement, band, theta_s, format!("θ_s = {theta_s}°")))
+        .collect::<Result<Vec<_>, _>>()?;
+    let title = format!("{shown}: BRDF over the hemisphere at {nm} nm");
+    let map = hemisphere_map(&format!("{leaf}-sources"), &title, MAP_NOTE, &columns);
+    let caption = format!("BRDF at {nm} nm for each source, measured and modelled (as Figs 2 and 5)");
+    made.add(leaf, "hemisphere-sources", caption, map.ok_or_else(|| TOO_FEW.to_string()));
+    Ok(())
+}
+
+/// Measured against modelled values of every band that was fitted.
+fn density(made: &mut Made, results: &Results, measurement: &Measurement) -> Result<(), PlotError> {
+    let Some(bands) = &results.bands else { return Ok(()) };
+    let limit = results.max_theta_v_deg();
+    let brdf = measurement.brdf();
+    let width = measurement.directions.len();
+    let mut pairs = Vec::new();
+    for (band, nm) in bands.wavelengths_nm.iter().enumerate() {
+        let place = measurement.wavelengths_nm.iter().position(|other| other == nm);
+        let (Some(place), Ok(model)) = (place, results.model_at(band)) else { continue };
+        for (value, d) in brdf.iter().skip(place * width).zip(&measurement.directions) {
+            if d.theta_v_deg <= limit && value.is_finite() {
+                pairs.push([model.brdf(d.theta_s_deg, d.theta_v_deg, d.phi_v_deg), *value]);
+            }
+        }
+    }
+    let leaf = results.leaf.as_str();
+    let title = format!("{}: measured against modelled BRDF", literal(leaf));
+    let caption = "Measured against modelled BRDF, all bands and directions fitted (as Fig. 4)".to_string();
+    made.add(leaf, "density", caption, scatter::scatter(&format!("{leaf}-density"), &title, &pairs));
+    Ok(())
+}
+
+/// Cuts through the plane of incidence and the valley of χ², in the red.
+fn cuts(made: &mut Made, results: &Results, measurement: &Measurement) -> Result<(), PlotError> {
+    let Some(bands) = &results.bands else { return Ok(()) };
+    let Some(band) = bands.nearest(RED_NM) else { return Ok(()) };
+    let nm = bands.wavelengths_nm[band];
+    let Some(place) = measurement.wavelengths_nm.iter().position(|other| *other == nm) else { return Ok(()) };
+    let leaf = results.leaf.as_str();
+    let shown = literal(leaf);
+    let model = results.model_at(band)?;
+    let limit = results.max_theta_v_deg();
+
+    let cut = |theta_s_deg: f64| Cut {
+        theta_s_deg,
+        values: dots(measurement, nm, theta_s_deg, limit)
+            .into_iter()
+            .map(|dot| (dot.theta_v_deg, dot.phi_v_deg, dot.brdf, dot.fitted))
+            .collect(),
+    };
+    let cuts: Vec<Cut> = sources(measurement).into_iter().map(cut).collect();
+    let squares: Vec<f64> = cuts
+        .iter()
+        .flat_map(|cut| cut.values.iter().map(move |value| (cut.theta_s_deg, value)))
+        .filter(|(_, (_, _, brdf, fitted))| *fitted && brdf.is_finite())
+        .map(|(theta_s, (theta_v, phi_v, brdf, _))| (brdf - model.brdf(theta_s, *theta_v, *phi_v)).powi(2))
+        .collect();
+    let rmse = (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt();
+    let title = format!("{shown}: plane of incidence at {nm} nm");
+    let note = format!(
+        "values within {OUT_OF_PLANE_DEG}° of the plane; residual: measured − modelled in the value's own direction"
+    );
+    let caption = format!("Cuts through the plane of incidence at {nm} nm with residuals");
+    let svg = principal_plane(&format!("{leaf}-plane"), &title, &note, &cuts, &model, rmse);
+    made.add(leaf, "principal-plane", caption, svg);
+
+    let weighted = results.summary.get("weights").and_then(serde_json::Value::as_str) == Some("1/sd^2");
+    let width = measurement.directions.len();
+    let brdf = measurement.brdf();
+    let sd = measurement.brdf_sd().filter(|_| weighted);
+    let values =
+        measurement.directions.iter().enumerate().filter(|(_, d)| d.theta_v_deg <= limit).filter_map(|(i, d)| {
+            let weight = sd.as_ref().map_or(1.0, |sd| 1.0 / (sd[place * width + i] * sd[place * width + i]));
+            Band::value([d.theta_s_deg, d.theta_v_deg, d.phi_v_deg], brdf[place * width + i], weight)
+        });
+    let of = |columns: &[Vec<f64>; 3]| [columns[1][band], columns[2][band]];
+    let valley_band = Band {
+        values: values.collect(),
+        fitted: of(&bands.values),
+        errors: of(&bands.errors),
+        normalization: results.normalization(),
+    };
+    let title = format!("{shown}: χ² over n and σ at {nm} nm");
+    let note = format!("k_L at its best everywhere; cross: the fit; {}", convention(results));
+    let caption = format!("Valley of χ² over n and σ at {nm} nm, and the joint confidence of the two");
+    made.add(leaf, "valley", caption, valley(&format!("{leaf}-valley"), &title, &note, &valley_band));
+    Ok(())
+}
+
+/// Columns of a figure of several leaves, at most.
+const LEAVES: usize = 6;
+
+/// Figures of several leaves together.
+///
+/// # Errors
+/// Files that `fit` did not write.
+pub fn figures_of_leaves(leaves: &[(&Results, Option<&Measurement>)]) -> Result<Made, PlotError> {
+    let mut made = Made::default();
+    let with_data: Vec<(&Results, &Measurement)> =
+        leaves.iter().filter_map(|(results, measurement)| Some((*results, (*measurement)?))).collect();
+    // Fig. 2: θ_s = 21° at 680 nm. Fig. 5: θ_s = 41° where the leaf is darkest.
+    let pictures: [(&'static str, f64, bool); 2] = [("leaves-680nm", 21.0, false), ("leaves-darkest", 41.0, true)];
+    for (name, wanted, darkest) in pictures {
+        let mut columns = Vec::new();
+        for (results, measurement) in &with_data {
+            let Some(bands) = &results.bands else { continue };
+            let band = if darkest { bands.darkest() } else { bands.nearest(RED_NM) };
+            let distance = |theta: &f64| (theta - wanted).abs();
+            let source = sources(measurement).into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let (Some(band), Some(theta_s)) = (band, source) else { continue };
+            let mut heading = literal(&results.leaf);
+            if darkest || bands.wavelengths_nm[band] != RED_NM {
+                heading.push_str(&format!(", {} nm", bands.wavelengths_nm[band]));
+            }
+            if theta_s != wanted {
+                heading.push_str(&format!(", θ_s = {theta_s}°"));
+            }
+            columns.push(column(results, measurement, band, theta_s, heading)?);
+        }
+        if columns.len() < 2 {
+            continue;
+        }
+        let many = columns.len() > LEAVES;
+        columns.truncate(LEAVES);
+        let (title, as_figure) = match darkest {
+            true => (format!("BRDF where each leaf is darkest, θ_s = {wanted}°"), "Fig. 5"),
+            false => (format!("BRDF at {RED_NM} nm, θ_s = {wanted}°"), "Fig. 2"),
+        };
+        let caption = format!("Leaves side by side, measured and modelled (as {as_figure})");
+        let map = hemisphere_map(name, &title, MAP_NOTE, &columns);
+        made.add("all leaves", name, caption, map.ok_or_else(|| TOO_FEW.to_string()));
+        if many {
+            made.left_out.push(format!("{name}: only the first {LEAVES} leaves are shown"));
+        }
+    }
+    Ok(made)
+}
