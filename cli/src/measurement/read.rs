@@ -10,7 +10,7 @@ use super::{Azimuth, Layout, Measurement, Quantity, ReadError, long, wide};
 /// What the user says about a file that it does not say itself.
 ///
 /// Where the file does say it, and says something else, it is refused: one of the two is wrong.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReadOptions {
     /// BRF or BRDF (`--quantity`).
     pub quantity: Option<Quantity>,
