@@ -97,7 +97,7 @@ static void points(uint32_t *state, uint32_t block, agreement_print *print) {
         status = lb_direction_from_degrees(theta_s, theta_v, phi_v, one.normalization, &direction);
         hash_value(&hash[DIRECTION], status, direction.cos_theta_a);
         hash_value(&hash[DIRECTION], status, direction.tan2_alpha);
-        hash_value(&hash[DIRECTION], status, direction.weight);
+        hash_value(&hash[DIRECTION], status, direction.lobe_weight);
         if (status == LB_OK) {
             status = lb_brdf_at(&one, &direction, &value);
             hash_value(&hash[DIRECTION], status, value);
@@ -123,12 +123,13 @@ static void hemisphere(uint32_t *state, uint32_t block, agreement_print *print) 
 }
 
 static void inversion(uint32_t *state, uint32_t block, agreement_print *print) {
-    lb_direction directions[DIRECTIONS];
+    float cos_theta_a[DIRECTIONS], tan2_alpha[DIRECTIONS], lobe_weight[DIRECTIONS];
     float brdf[DIRECTIONS], weight[DIRECTIONS];
+    lb_directions directions = {cos_theta_a, tan2_alpha, lobe_weight, DIRECTIONS};
+    lb_workspace workspace;
+    lb_band band = {0};
     uint32_t hash = 2166136261u;
     lb_leaf one = leaf(state);
-    lb_band band = {0};
-    float workspace[LB_BAND_WORKSPACE_PER_DIRECTION * DIRECTIONS];
     one.k_lambert = one.k_lambert > 1.0f ? 1.0f : one.k_lambert;
     one.sigma += 1.0f / 32.0f;
     for (int i = 0; i < DIRECTIONS; i++) {
@@ -136,15 +137,18 @@ static void inversion(uint32_t *state, uint32_t block, agreement_print *print) {
         float theta_s = below(state, 60, 1.0f);
         float theta_v = below(state, 70, 1.0f);
         float phi_v = below(state, 360, 1.0f);
-        lb_status status = lb_direction_from_degrees(theta_s, theta_v, phi_v, LB_BOUSQUET_2005, &directions[i]);
+        lb_direction direction = {0, 0, 0};
+        lb_status status = lb_direction_from_degrees(theta_s, theta_v, phi_v, LB_BOUSQUET_2005, &direction);
         hash_word(&hash, (uint32_t)status);
-        status = lb_brdf_at(&one, &directions[i], &brdf[i]);
+        cos_theta_a[i] = direction.cos_theta_a;
+        tan2_alpha[i] = direction.tan2_alpha;
+        lobe_weight[i] = direction.lobe_weight;
+        status = lb_brdf_at(&one, &direction, &brdf[i]);
         hash_value(&hash, status, brdf[i]);
         brdf[i] += below(state, 64, 1.0f / 65536.0f); /* what an instrument adds */
         weight[i] = i % 8 == 7 ? 0.0f : 1.0f;
     }
-    lb_status status =
-        lb_fit_band(directions, brdf, weight, DIRECTIONS, NULL, workspace, LB_BAND_WORKSPACE_PER_DIRECTION * DIRECTIONS, &band);
+    lb_status status = lb_fit_band(&directions, brdf, weight, NULL, &workspace, &band);
     hash_value(&hash, status, band.k_lambert);
     hash_value(&hash, status, band.n);
     hash_value(&hash, status, band.sigma);
@@ -186,7 +190,7 @@ static void interior(uint32_t *state, uint32_t block, agreement_print *print) {
         wavelengths[i] = (float)(LB_SLICE_FIRST_NM + LB_SLICE_STEP_NM * band);
         k_lambert[i] = reflectance[band];
     }
-    status = lb_fit_cab(&surface, wavelengths, k_lambert, 8, &inside, &cab);
+    status = lb_fit_cab(&surface, wavelengths, k_lambert, 8, &inside, 0.25f, &cab);
     hash_value(&hash, status, cab.n_struct);
     hash_value(&hash, status, cab.cab);
     hash_value(&hash, status, cab.n_struct_se);

@@ -18,9 +18,9 @@
 #include <stddef.h>
 
 /**
- * Numbers of workspace that lb_fit_band and lb_fit_bands take for each direction.
+ * Floats in an lb_workspace.
  */
-#define LB_BAND_WORKSPACE_PER_DIRECTION 4
+#define LB_WORKSPACE_FLOATS 140
 
 /**
  * Bit of lb_band.at_bound: k_lambert is at its lower bound and held there.
@@ -83,22 +83,26 @@
 typedef int32_t lb_status;
 
 /**
- * One pair of directions, prepared: three numbers that the fit and lb_brdf_at read. Keep it in a constant table.
+ * The directions of a measurement, prepared: three arrays of `count` values each, usually constant tables in flash.
  */
-typedef struct lb_direction {
+typedef struct lb_directions {
   /**
-   * Cosine of the incidence angle on the facet.
+   * lb_direction.cos_theta_a of every direction.
    */
-  float cos_theta_a;
+  const float *cos_theta_a;
   /**
-   * Squared tangent of the facet's tilt.
+   * lb_direction.tan2_alpha of every direction.
    */
-  float tan2_alpha;
+  const float *tan2_alpha;
   /**
-   * pi G/(K cos theta_s cos theta_v), the constant K of the normalization included.
+   * lb_direction.lobe_weight of every direction.
    */
-  float weight;
-} lb_direction;
+  const float *lobe_weight;
+  /**
+   * Number of directions.
+   */
+  uint32_t count;
+} lb_directions;
 
 /**
  * Where the three parameters are sought: -1 <= k_lambert <= 2, 1.0001 <= n <= 100, 1e-4 <= sigma <= 10, each lower < upper.
@@ -129,6 +133,17 @@ typedef struct lb_bounds {
    */
   float sigma_upper;
 } lb_bounds;
+
+/**
+ * Memory that the inversion of a band works in, the caller's: on the stack, static, or shared between tasks that take turns.
+ * Its contents do not matter before, and mean nothing after.
+ */
+typedef struct lb_workspace {
+  /**
+   * Not for use.
+   */
+  float memory[LB_WORKSPACE_FLOATS];
+} lb_workspace;
 
 /**
  * What the inversion of one wavelength finds.
@@ -279,6 +294,24 @@ typedef struct lb_cab {
 } lb_cab;
 
 /**
+ * One pair of directions, prepared: three numbers that lb_brdf_at and (as arrays) the fit read.
+ */
+typedef struct lb_direction {
+  /**
+   * Cosine of the incidence angle on the facet.
+   */
+  float cos_theta_a;
+  /**
+   * Squared tangent of the facet's tilt.
+   */
+  float tan2_alpha;
+  /**
+   * pi G/(K cos theta_s cos theta_v), the constant K of the normalization included.
+   */
+  float lobe_weight;
+} lb_direction;
+
+/**
  * Sines and cosines of one pair of directions, as an instrument with fixed directions keeps them in a table.
  */
 typedef struct lb_cosines {
@@ -397,19 +430,14 @@ typedef struct lb_gradient {
 #define LB_ERR_COUNT 13
 
 /**
- * The workspace is too small.
- */
-#define LB_ERR_WORKSPACE 14
-
-/**
  * A parameter of PROSPECT is impossible, or probably in another unit.
  */
-#define LB_ERR_INTERIOR 15
+#define LB_ERR_INTERIOR 14
 
 /**
  * A wavelength is outside the slice of PROSPECT, or they do not rise.
  */
-#define LB_ERR_WAVELENGTH 16
+#define LB_ERR_WAVELENGTH 15
 
 #ifdef __cplusplus
 extern "C" {
@@ -418,47 +446,43 @@ extern "C" {
 /**
  * Inverts the measurements of one wavelength for k_L, n and sigma: least squares inside bounds (Eq. 11).
  *
- * - directions: `count` prepared directions.
+ * - directions: prepared directions.
  * - brdf: measured BRDF, sr^-1, one value a direction.
- * - weight: one a value, 0 for missing ones; null: every value counts once.
+ * - weight: one a value: 1, or relative weights; 0 for a missing value.
  * - bounds: null for those of the paper's Table 3.
- * - workspace, workspace_len: LB_BAND_WORKSPACE_PER_DIRECTION numbers a direction.
+ * - workspace: memory of the caller.
  *
  * LB_ERR_TOO_FEW where fewer than 3 values count. A search that stops early is an answer: see `converged`.
  *
  * # Safety
- * `directions`, `brdf` and `weight` point to `count` elements, `workspace` to `workspace_len` values that nothing else uses
- * during the call; or they are null.
+ * `brdf` and `weight` point to `directions->count` values, or are null; so do the arrays of `directions`. Nothing else uses
+ * `workspace` during the call.
  */
-lb_status lb_fit_band(const struct lb_direction *directions,
+lb_status lb_fit_band(const struct lb_directions *directions,
                       const float *brdf,
                       const float *weight,
-                      uint32_t count,
                       const struct lb_bounds *bounds,
-                      float *workspace,
-                      uint32_t workspace_len,
+                      struct lb_workspace *workspace,
                       struct lb_band *band);
 
 /**
  * Inverts several wavelengths measured at the same directions, one after the other.
  *
- * - brdf, weight: bands x count values, band after band.
+ * - brdf: band_count x count values, band after band.
+ * - weight: count values, for all bands.
  * - bands: results, one a band, each with its own status.
  *
- * Everything else as in lb_fit_band. Returns LB_OK where every band has a result, else the last status that was not.
+ * Everything else as in lb_fit_band. Returns LB_OK where every band has a result, else the status of the last one that has not.
  *
  * # Safety
- * As lb_fit_band, with `brdf` and `weight` pointing to `band_count` x `count` values and `bands` to room for `band_count`
- * results.
+ * As lb_fit_band, with `brdf` pointing to `band_count` x `count` values and `bands` to room for `band_count` results.
  */
-lb_status lb_fit_bands(const struct lb_direction *directions,
+lb_status lb_fit_bands(const struct lb_directions *directions,
                        const float *brdf,
                        const float *weight,
-                       uint32_t count,
                        uint32_t band_count,
                        const struct lb_bounds *bounds,
-                       float *workspace,
-                       uint32_t workspace_len,
+                       struct lb_workspace *workspace,
                        struct lb_band *bands);
 
 /**
@@ -471,6 +495,7 @@ lb_status lb_fit_bands(const struct lb_direction *directions,
  * - k_lambert: k_L at these wavelengths, one value each; more than 2.
  * - bands: their number.
  * - held: the other contents; its n_struct and cab are not looked at, but must lie in their ranges.
+ * - car_per_cab: C_car = car_per_cab x C_ab, 0 to 10, added to held's car; 0.25 is usual in green leaves, 0 ties nothing.
  *
  * Bounded: at most 80 steps in all, each with at most two passes over the wavelengths.
  *
@@ -482,6 +507,7 @@ lb_status lb_fit_cab(const struct lb_leaf *surface,
                      const float *k_lambert,
                      uint32_t bands,
                      const struct lb_interior *held,
+                     float car_per_cab,
                      struct lb_cab *cab);
 
 /**
@@ -504,7 +530,7 @@ lb_status lb_direction_from_cosines(const struct lb_cosines *at,
 
 /**
  * BRDF of a leaf in sr^-1 at a prepared direction: the cheapest way. The direction's normalization holds; that of the
- * leaf is not looked at.
+ * leaf must be a valid one, and is not looked at otherwise. The direction is not checked.
  */
 lb_status lb_brdf_at(const struct lb_leaf *leaf,
                      const struct lb_direction *at,
@@ -564,9 +590,12 @@ lb_status lb_fresnel(float n, float cos_theta_a, float *fresnel);
 /**
  * BRDF of a leaf in sr^-1 (Eqs 3, 4, 10) from sines and cosines.
  *
- * Relative error below 1e-5 where tan^2(alpha)/sigma^2 < 14, 2.5e-5 below 80.
+ * Relative error below 1e-5 where tan^2(alpha)/sigma^2 < 14, 2.5e-5 below 80. That a sine and a cosine belong together
+ * is not checked here (lb_brdf_gradient does).
  */
-lb_status lb_brdf(const struct lb_leaf *leaf, const struct lb_cosines *at, float *brdf);
+lb_status lb_brdf(const struct lb_leaf *leaf,
+                  const struct lb_cosines *at,
+                  float *brdf);
 
 /**
  * BRDF and its exact derivatives with respect to k_L, n and sigma, sr^-1.

@@ -2,18 +2,16 @@
 
 use core::mem::MaybeUninit;
 
-use leafbrdf_fit::{
-    AtBound, Band, BandBounds, BandFit, BandOptions, BandSolver, Directions, FitError, Interval, Start,
-};
+use leafbrdf_fit::device::{self, Workspace};
+use leafbrdf_fit::{AtBound, Band, BandBounds, BandFit, BandOptions, Directions, FitError, Interval};
 
-use crate::border::{slice, slice_mut};
-use crate::direction::lb_direction;
+use crate::border::{numbers, slice_mut, workspace as border_workspace};
 use crate::number::{Number, float, number};
-use crate::status::{LB_ERR_BOUNDS, LB_ERR_COUNT, LB_ERR_DATA, LB_ERR_TOO_FEW, LB_ERR_WORKSPACE, LB_OK, lb_status};
+use crate::status::{LB_ERR_BOUNDS, LB_ERR_COUNT, LB_ERR_DATA, LB_ERR_NULL, LB_ERR_TOO_FEW, LB_OK, lb_status};
 use crate::surface::give;
 
-/// Numbers of workspace that lb_fit_band and lb_fit_bands take for each direction.
-pub const LB_BAND_WORKSPACE_PER_DIRECTION: u32 = 4;
+/// Floats in an lb_workspace.
+pub const LB_WORKSPACE_FLOATS: usize = 140;
 
 /// Bit of lb_band.at_bound: k_lambert is at its lower bound and held there.
 pub const LB_AT_LOWER_K_LAMBERT: u32 = 1;
@@ -123,82 +121,119 @@ impl lb_band {
     }
 }
 
+/// The directions of a measurement, prepared: three arrays of `count` values each, usually constant tables in flash.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct lb_directions {
+    /// lb_direction.cos_theta_a of every direction.
+    pub cos_theta_a: *const f32,
+    /// lb_direction.tan2_alpha of every direction.
+    pub tan2_alpha: *const f32,
+    /// lb_direction.lobe_weight of every direction.
+    pub lobe_weight: *const f32,
+    /// Number of directions.
+    pub count: u32,
+}
+
+/// Memory that the inversion of a band works in, the caller's: on the stack, static, or shared between tasks that take turns.
+/// Its contents do not matter before, and mean nothing after.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct lb_workspace {
+    /// Not for use.
+    pub memory: [f32; LB_WORKSPACE_FLOATS],
+}
+
+impl lb_directions {
+    /// # Safety
+    /// Pointers that are not null point to `count` initialised values that nobody changes during the call.
+    unsafe fn numbers(&self) -> Result<Directions<'_, Number>, lb_status> {
+        // SAFETY: the caller's promise
+        unsafe {
+            Ok(Directions {
+                cos_theta_a: numbers(self.cos_theta_a, self.count)?,
+                tan2_alpha: numbers(self.tan2_alpha, self.count)?,
+                weight: numbers(self.lobe_weight, self.count)?,
+            })
+        }
+    }
+}
+
 /// Inverts the measurements of one wavelength for k_L, n and sigma: least squares inside bounds (Eq. 11).
 ///
-/// - directions: `count` prepared directions.
+/// - directions: prepared directions.
 /// - brdf: measured BRDF, sr^-1, one value a direction.
-/// - weight: one a value, 0 for missing ones; null: every value counts once.
+/// - weight: one a value: 1, or relative weights; 0 for a missing value.
 /// - bounds: null for those of the paper's Table 3.
-/// - workspace, workspace_len: LB_BAND_WORKSPACE_PER_DIRECTION numbers a direction.
+/// - workspace: memory of the caller.
 ///
 /// LB_ERR_TOO_FEW where fewer than 3 values count. A search that stops early is an answer: see `converged`.
 ///
 /// # Safety
-/// `directions`, `brdf` and `weight` point to `count` elements, `workspace` to `workspace_len` values that nothing else uses
-/// during the call; or they are null.
+/// `brdf` and `weight` point to `directions->count` values, or are null; so do the arrays of `directions`. Nothing else uses
+/// `workspace` during the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lb_fit_band(
-    directions: *const lb_direction,
+    directions: Option<&lb_directions>,
     brdf: *const f32,
     weight: *const f32,
-    count: u32,
     bounds: Option<&lb_bounds>,
-    workspace: *mut f32,
-    workspace_len: u32,
+    workspace: *mut lb_workspace,
     band: Option<&mut MaybeUninit<lb_band>>,
 ) -> lb_status {
-    let Some(out) = band else { return crate::status::LB_ERR_NULL };
+    let (Some(directions), Some(out)) = (directions, band) else { return LB_ERR_NULL };
     let fit = || {
         // SAFETY: the caller's promise about pointers and lengths
-        let (directions, brdf, workspace) =
-            unsafe { (slice(directions, count)?, slice(brdf, count)?, slice_mut(workspace, workspace_len)?) };
-        // SAFETY: as above; null means that there are no weights
-        let weight = unsafe { slice(weight, count) }.ok();
-        fit_band(directions, brdf, weight, bounds, workspace)
+        let (shared, brdf, weight, workspace) = unsafe {
+            (
+                directions.numbers()?,
+                numbers(brdf, directions.count)?,
+                numbers(weight, directions.count)?,
+                border_workspace(workspace)?,
+            )
+        };
+        fit_band(shared, Band { brdf, weight }, bounds, workspace)
     };
     give(out, fit())
 }
 
 /// Inverts several wavelengths measured at the same directions, one after the other.
 ///
-/// - brdf, weight: bands x count values, band after band.
+/// - brdf: band_count x count values, band after band.
+/// - weight: count values, for all bands.
 /// - bands: results, one a band, each with its own status.
 ///
-/// Everything else as in lb_fit_band. Returns LB_OK where every band has a result, else the last status that was not.
+/// Everything else as in lb_fit_band. Returns LB_OK where every band has a result, else the status of the last one that has not.
 ///
 /// # Safety
-/// As lb_fit_band, with `brdf` and `weight` pointing to `band_count` x `count` values and `bands` to room for `band_count`
-/// results.
+/// As lb_fit_band, with `brdf` pointing to `band_count` x `count` values and `bands` to room for `band_count` results.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lb_fit_bands(
-    directions: *const lb_direction,
+    directions: Option<&lb_directions>,
     brdf: *const f32,
     weight: *const f32,
-    count: u32,
     band_count: u32,
     bounds: Option<&lb_bounds>,
-    workspace: *mut f32,
-    workspace_len: u32,
+    workspace: *mut lb_workspace,
     bands: *mut MaybeUninit<lb_band>,
 ) -> lb_status {
+    let Some(directions) = directions else { return LB_ERR_NULL };
+    let count = directions.count;
     let fit = || {
         let Some(values) = count.checked_mul(band_count).filter(|values| *values > 0) else { return Err(LB_ERR_COUNT) };
         // SAFETY: the caller's promise about pointers and lengths
-        let (directions, brdf, workspace, bands) = unsafe {
+        let (shared, brdf, weight, workspace, bands) = unsafe {
             (
-                slice(directions, count)?,
-                slice(brdf, values)?,
-                slice_mut(workspace, workspace_len)?,
+                directions.numbers()?,
+                numbers(brdf, values)?,
+                numbers(weight, count)?,
+                border_workspace(workspace)?,
                 slice_mut(bands, band_count)?,
             )
         };
-        // SAFETY: as above; null means that there are no weights
-        let weight = unsafe { slice(weight, values) }.ok();
-        let mut weights = weight.map(|weight| weight.chunks_exact(count.max(1) as usize));
         let mut last = LB_OK;
         for (out, brdf) in bands.iter_mut().zip(brdf.chunks_exact(count.max(1) as usize)) {
-            let weight = weights.as_mut().and_then(Iterator::next);
-            let band = fit_band(directions, brdf, weight, bounds, workspace).unwrap_or_else(lb_band::without);
+            let band = fit_band(shared, Band { brdf, weight }, bounds, workspace).unwrap_or_else(lb_band::without);
             if band.status != LB_OK {
                 last = band.status;
             }
@@ -209,34 +244,14 @@ pub unsafe extern "C" fn lb_fit_bands(
     fit().unwrap_or_else(|status| status)
 }
 
-/// Starts that see every part of the box.
-const STARTS: [Start<Number>; 4] = [
-    Start { n: 1.47, sigma: 0.06 },
-    Start { n: 1.47, sigma: 0.15 },
-    Start { n: 1.47, sigma: 0.3 },
-    Start { n: 1.47, sigma: 0.6 },
-];
-
+// one copy of the solver for both
 #[inline(never)]
 fn fit_band(
-    directions: &[lb_direction],
-    brdf: &[f32],
-    weight: Option<&[f32]>,
+    directions: Directions<'_, Number>,
+    band: Band<'_, Number>,
     bounds: Option<&lb_bounds>,
-    workspace: &mut [f32],
+    workspace: &mut Workspace<Number>,
 ) -> Result<lb_band, lb_status> {
-    let count = directions.len();
-    let (cos_theta_a, rest) = workspace.split_at_mut_checked(count).ok_or(LB_ERR_WORKSPACE)?;
-    let (tan2_alpha, rest) = rest.split_at_mut_checked(count).ok_or(LB_ERR_WORKSPACE)?;
-    let (lobe, rest) = rest.split_at_mut_checked(count).ok_or(LB_ERR_WORKSPACE)?;
-    let (omega, _) = rest.split_at_mut_checked(count).ok_or(LB_ERR_WORKSPACE)?;
-    for (((direction, c), t), w) in directions.iter().zip(&mut *cos_theta_a).zip(&mut *tan2_alpha).zip(&mut *lobe) {
-        (*c, *t, *w) = (direction.cos_theta_a, direction.tan2_alpha, direction.weight);
-    }
-    match weight {
-        Some(weight) => omega.iter_mut().zip(weight).for_each(|(o, w)| *o = *w),
-        None => omega.fill(1.0),
-    }
     let mut options = BandOptions::table_3();
     if let Some(bounds) = bounds {
         options.bounds = BandBounds {
@@ -245,9 +260,7 @@ fn fit_band(
             sigma: Interval::new(number(bounds.sigma_lower), number(bounds.sigma_upper)),
         };
     }
-    let directions = Directions { cos_theta_a, tan2_alpha, weight: lobe };
-    let mut solver = BandSolver::<Number, 1>::new(directions, options, None).map_err(refused)?;
-    let fit = solver.fit(Band { brdf, weight: omega }, &STARTS).map_err(refused)?.ok_or(LB_ERR_TOO_FEW)?;
+    let fit = device::fit_band(directions, band, &options, workspace).map_err(refused)?.ok_or(LB_ERR_TOO_FEW)?;
     Ok(lb_band::new(&fit))
 }
 

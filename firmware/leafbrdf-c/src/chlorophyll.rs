@@ -15,7 +15,7 @@ use crate::border::slice;
 use crate::interior::{LB_SLICE_BANDS, LB_SLICE_FIRST_NM, LB_SLICE_STEP_NM, Wavelength, lb_interior};
 use crate::number::{Number, float, number};
 use crate::status::{
-    LB_ERR_DATA, LB_ERR_NULL, LB_ERR_THETA_S, LB_ERR_TOO_FEW, LB_ERR_WAVELENGTH, lb_status,
+    LB_ERR_DATA, LB_ERR_INTERIOR, LB_ERR_NULL, LB_ERR_THETA_S, LB_ERR_TOO_FEW, LB_ERR_WAVELENGTH, lb_status,
 };
 use crate::surface::{give, lb_leaf};
 
@@ -59,6 +59,7 @@ const STARTS: [[f32; 2]; 2] = [[1.5, 40.0], [1.5, 8.0]];
 /// - k_lambert: k_L at these wavelengths, one value each; more than 2.
 /// - bands: their number.
 /// - held: the other contents; its n_struct and cab are not looked at, but must lie in their ranges.
+/// - car_per_cab: C_car = car_per_cab x C_ab, 0 to 10, added to held's car; 0.25 is usual in green leaves, 0 ties nothing.
 ///
 /// Bounded: at most 80 steps in all, each with at most two passes over the wavelengths.
 ///
@@ -71,6 +72,7 @@ pub unsafe extern "C" fn lb_fit_cab(
     k_lambert: *const f32,
     bands: u32,
     held: Option<&lb_interior>,
+    car_per_cab: f32,
     cab: Option<&mut MaybeUninit<lb_cab>>,
 ) -> lb_status {
     let (Some(surface), Some(held), Some(out)) = (surface, held, cab) else { return LB_ERR_NULL };
@@ -78,9 +80,12 @@ pub unsafe extern "C" fn lb_fit_cab(
         // SAFETY: the caller's promise about pointers and lengths
         let (wavelengths_nm, k_lambert) = unsafe { (slice(wavelengths_nm, bands)?, slice(k_lambert, bands)?) };
         let held = held.checked()?;
+        if !(0.0..=10.0).contains(&car_per_cab) {
+            return Err(LB_ERR_INTERIOR);
+        }
         let zenith = Illumination::new(Angle::from_degrees(number(0.0))).map_err(|_| LB_ERR_THETA_S)?;
         let dhrf_specular = surface.surface()?.dhrf(&zenith, Grade::E4d);
-        let mut misfit = Misfit { wavelengths_nm, k_lambert, dhrf_specular, held };
+        let mut misfit = Misfit { wavelengths_nm, k_lambert, dhrf_specular, held, car_per_cab };
         misfit.check()?;
         Ok(misfit.fit())
     };
@@ -92,6 +97,7 @@ struct Misfit<'a> {
     k_lambert: &'a [f32],
     dhrf_specular: Number,
     held: LeafParams<f32>,
+    car_per_cab: f32,
 }
 
 impl Misfit<'_> {
@@ -185,7 +191,9 @@ impl Objective<Number, 2> for Misfit<'_> {
         for (nm, k_lambert) in self.wavelengths_nm.iter().zip(self.k_lambert) {
             let place = (*nm - LB_SLICE_FIRST_NM as f32) / LB_SLICE_STEP_NM as f32;
             let band = place as u32;
-            let Some(here) = Wavelength::new(&self.held, band as usize, place - band as f32) else { continue };
+            let Some(here) = Wavelength::new(&self.held, self.car_per_cab, band as usize, place - band as f32) else {
+                continue;
+            };
             let k = (here.others + cab * here.cab) * per_plate;
             let (optics, slopes) = plates_with_slopes(here.faces, k, n_struct);
             let residual = number(*k_lambert) + self.dhrf_specular - optics.reflectance;

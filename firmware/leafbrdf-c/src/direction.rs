@@ -2,13 +2,13 @@
 
 use core::mem::MaybeUninit;
 
-use leafbrdf_core::{Dielectric, DirectionTerms, Geometry, Real};
+use leafbrdf_core::{DirectionTerms, DomainError};
 
 use crate::number::{Number, float, number};
-use crate::status::{LB_ERR_K_LAMBERT, LB_ERR_N, LB_ERR_NULL, LB_ERR_SIGMA, lb_status};
-use crate::surface::{from_degrees, give, lb_cosines, lb_leaf, normalization};
+use crate::status::{LB_ERR_NULL, lb_status};
+use crate::surface::{self, give, lb_cosines, lb_leaf};
 
-/// One pair of directions, prepared: three numbers that the fit and lb_brdf_at read. Keep it in a constant table.
+/// One pair of directions, prepared: three numbers that lb_brdf_at and (as arrays) the fit read.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct lb_direction {
@@ -17,27 +17,18 @@ pub struct lb_direction {
     /// Squared tangent of the facet's tilt.
     pub tan2_alpha: f32,
     /// pi G/(K cos theta_s cos theta_v), the constant K of the normalization included.
-    pub weight: f32,
+    pub lobe_weight: f32,
 }
 
 impl lb_direction {
-    fn new(geometry: &Geometry<Number>, code: u32) -> Result<Self, lb_status> {
-        let terms = DirectionTerms::new(geometry, normalization(code)?);
+    #[inline(always)]
+    fn new(terms: Result<DirectionTerms<Number>, DomainError>) -> Result<Self, lb_status> {
+        let terms = terms.map_err(surface::direction)?;
         Ok(lb_direction {
             cos_theta_a: float(terms.cos_theta_a),
             tan2_alpha: float(terms.tan2_alpha),
-            weight: float(terms.weight),
+            lobe_weight: float(terms.weight),
         })
-    }
-
-    /// As the model reads it.
-    #[inline(always)]
-    pub(crate) fn terms(&self) -> DirectionTerms<Number> {
-        DirectionTerms {
-            cos_theta_a: number(self.cos_theta_a),
-            tan2_alpha: number(self.tan2_alpha),
-            weight: number(self.weight),
-        }
     }
 }
 
@@ -53,8 +44,11 @@ pub extern "C" fn lb_direction_from_degrees(
     direction: Option<&mut MaybeUninit<lb_direction>>,
 ) -> lb_status {
     let Some(out) = direction else { return LB_ERR_NULL };
-    let geometry = from_degrees(theta_s_deg, theta_v_deg, phi_v_deg);
-    give(out, geometry.and_then(|geometry| lb_direction::new(&geometry, normalization)))
+    let [theta_s, theta_v, phi_v] = [theta_s_deg, theta_v_deg, phi_v_deg].map(number);
+    let value = || {
+        lb_direction::new(DirectionTerms::at_degrees(theta_s, theta_v, phi_v, surface::normalization(normalization)?))
+    };
+    give(out, value())
 }
 
 /// Prepares one pair of directions from sines and cosines.
@@ -65,11 +59,12 @@ pub extern "C" fn lb_direction_from_cosines(
     direction: Option<&mut MaybeUninit<lb_direction>>,
 ) -> lb_status {
     let (Some(at), Some(out)) = (at, direction) else { return LB_ERR_NULL };
-    give(out, at.checked().and_then(|geometry| lb_direction::new(&geometry, normalization)))
+    let value = || lb_direction::new(DirectionTerms::at_cosines(&at.numbers(), surface::normalization(normalization)?));
+    give(out, value())
 }
 
 /// BRDF of a leaf in sr^-1 at a prepared direction: the cheapest way. The direction's normalization holds; that of the
-/// leaf is not looked at.
+/// leaf must be a valid one, and is not looked at otherwise. The direction is not checked.
 #[unsafe(no_mangle)]
 pub extern "C" fn lb_brdf_at(
     leaf: Option<&lb_leaf>,
@@ -77,16 +72,15 @@ pub extern "C" fn lb_brdf_at(
     brdf: Option<&mut MaybeUninit<f32>>,
 ) -> lb_status {
     let (Some(leaf), Some(at), Some(out)) = (leaf, at, brdf) else { return LB_ERR_NULL };
-    let value = |leaf: &lb_leaf| {
-        let index = Dielectric::new(number(leaf.n)).map_err(|_| LB_ERR_N)?;
-        if !(leaf.sigma >= 1e-9 && leaf.sigma <= 1e3) {
-            return Err(LB_ERR_SIGMA);
-        }
-        if !(leaf.k_lambert >= 0.0 && leaf.k_lambert <= 1.0) {
-            return Err(LB_ERR_K_LAMBERT);
-        }
-        let diffuse = number(leaf.k_lambert) * Number::lit(core::f64::consts::FRAC_1_PI);
-        Ok(float(diffuse + at.terms().brdf(index, number(leaf.sigma))))
+    let value = || {
+        let diffuse = leaf.diffuse()?;
+        let surface = leaf.surface()?;
+        let terms = DirectionTerms {
+            cos_theta_a: number(at.cos_theta_a),
+            tan2_alpha: number(at.tan2_alpha),
+            weight: number(at.lobe_weight),
+        };
+        Ok(float(diffuse + terms.brdf(surface.index(), surface.sigma())))
     };
-    give(out, value(leaf))
+    give(out, value())
 }

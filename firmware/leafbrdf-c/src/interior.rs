@@ -4,10 +4,10 @@ use core::mem::MaybeUninit;
 
 use leafbrdf_core::Real;
 use leafbrdf_prospect::table::{TableD, View};
-use leafbrdf_prospect::{Interface, LeafParams, Prospect, Version};
+use leafbrdf_prospect::{Interface, LeafParams, Version, plates};
 
 use crate::border::slice_mut;
-use crate::number::{Number, number};
+use crate::number::{Number, float, number};
 use crate::status::{LB_ERR_COUNT, LB_ERR_INTERIOR, LB_ERR_NULL, LB_OK, lb_status};
 
 /// First wavelength of the slice of PROSPECT-D that is built in, nm.
@@ -66,14 +66,14 @@ pub(crate) struct Wavelength {
     pub faces: Interface<Number>,
     /// Sum of content x coefficient without C_ab.
     pub others: Number,
-    /// Coefficient of C_ab, cm^2 ug^-1.
+    /// Coefficient of C_ab and what is tied to it, cm^2 ug^-1.
     pub cab: Number,
 }
 
 impl Wavelength {
     /// A band of the slice, or a place `beyond` it by a fraction of the step, every column interpolated.
     #[inline(always)]
-    pub fn new(leaf: &LeafParams<f32>, band: usize, beyond: f32) -> Option<Self> {
+    pub fn new(leaf: &LeafParams<f32>, car_per_cab: f32, band: usize, beyond: f32) -> Option<Self> {
         let view: View<'_, f32> = SLICE.view();
         let below = view.interface(band)?;
         let above = view.interface(band + 1).unwrap_or(below);
@@ -89,10 +89,14 @@ impl Wavelength {
             let below = column.get(band).copied().unwrap_or(0.0);
             between(below, column.get(band + 1).copied().unwrap_or(below))
         });
-        let cab = columns.next()?;
+        let mut cab = columns.next()?;
         let mut others = Number::ZERO;
+        let mut tied = number(car_per_cab);
         for (column, content) in columns.zip(contents) {
             others += number(content) * column;
+            // C_car, the first of them, goes with C_ab
+            cab += tied * column;
+            tied = Number::ZERO;
         }
         Some(Wavelength { faces, others, cab })
     }
@@ -120,13 +124,15 @@ pub unsafe extern "C" fn lb_prospect_slice(
             return Err(LB_ERR_COUNT);
         }
         // SAFETY: the caller's promise about pointer and length
-        let (reflectance, transmittance) = unsafe { (slice_mut(reflectance, bands)?, slice_mut(transmittance, bands)?) };
+        let (reflectance, transmittance) =
+            unsafe { (slice_mut(reflectance, bands)?, slice_mut(transmittance, bands)?) };
         let leaf = interior.checked()?;
-        let model = Prospect::new(SLICE.view());
+        let n_struct = number(leaf.n_struct);
         for ((band, r), t) in (first_band as usize..).zip(reflectance).zip(transmittance) {
-            let optics = model.band(&leaf, band).map_err(|_| LB_ERR_INTERIOR)?;
-            r.write(optics.reflectance);
-            t.write(optics.transmittance);
+            let Wavelength { faces, others, cab } = Wavelength::new(&leaf, 0.0, band, 0.0).ok_or(LB_ERR_COUNT)?;
+            let optics = plates(faces, (others + number(leaf.cab) * cab) / n_struct, n_struct);
+            r.write(float(optics.reflectance));
+            t.write(float(optics.transmittance));
         }
         Ok(LB_OK)
     };

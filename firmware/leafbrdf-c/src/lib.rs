@@ -32,17 +32,17 @@ mod status;
 mod surface;
 
 pub use band::{
-    LB_BAND_WORKSPACE_PER_DIRECTION, LB_AT_LOWER_K_LAMBERT, LB_AT_LOWER_N, LB_AT_LOWER_SIGMA, LB_AT_UPPER_K_LAMBERT, LB_AT_UPPER_N, LB_AT_UPPER_SIGMA,
-    lb_band, lb_bounds, lb_fit_band, lb_fit_bands,
+    LB_AT_LOWER_K_LAMBERT, LB_AT_LOWER_N, LB_AT_LOWER_SIGMA, LB_AT_UPPER_K_LAMBERT, LB_AT_UPPER_N, LB_AT_UPPER_SIGMA,
+    LB_WORKSPACE_FLOATS, lb_band, lb_bounds, lb_directions, lb_fit_band, lb_fit_bands, lb_workspace,
 };
+pub use chlorophyll::{lb_cab, lb_fit_cab};
 pub use direction::{lb_brdf_at, lb_direction, lb_direction_from_cosines, lb_direction_from_degrees};
 pub use hemisphere::lb_dhrf;
-pub use chlorophyll::{lb_cab, lb_fit_cab};
 pub use interior::{LB_SLICE_BANDS, LB_SLICE_FIRST_NM, LB_SLICE_STEP_NM, lb_interior, lb_prospect_slice};
 pub use status::{
     LB_ERR_BOUNDS, LB_ERR_COUNT, LB_ERR_DATA, LB_ERR_INTERIOR, LB_ERR_K_LAMBERT, LB_ERR_N, LB_ERR_NORMALIZATION,
     LB_ERR_NULL, LB_ERR_PHI_V, LB_ERR_SIGMA, LB_ERR_THETA_A, LB_ERR_THETA_S, LB_ERR_THETA_V, LB_ERR_TOO_FEW,
-    LB_ERR_WAVELENGTH, LB_ERR_WORKSPACE, LB_OK, lb_status, lb_status_text, lb_version,
+    LB_ERR_WAVELENGTH, LB_OK, lb_status, lb_status_text, lb_version,
 };
 pub use surface::{
     LB_BOUSQUET_2005, LB_COOK_TORRANCE, lb_brdf, lb_brdf_from_degrees, lb_brdf_gradient, lb_cosines, lb_fresnel,

@@ -33,12 +33,10 @@ pub const LB_ERR_DATA: lb_status = 11;
 pub const LB_ERR_TOO_FEW: lb_status = 12;
 /// A count is 0, or leads beyond the table.
 pub const LB_ERR_COUNT: lb_status = 13;
-/// The workspace is too small.
-pub const LB_ERR_WORKSPACE: lb_status = 14;
 /// A parameter of PROSPECT is impossible, or probably in another unit.
-pub const LB_ERR_INTERIOR: lb_status = 15;
+pub const LB_ERR_INTERIOR: lb_status = 14;
 /// A wavelength is outside the slice of PROSPECT, or they do not rise.
-pub const LB_ERR_WAVELENGTH: lb_status = 16;
+pub const LB_ERR_WAVELENGTH: lb_status = 15;
 
 /// What a status means, in one English sentence in ASCII: a constant string, never null.
 #[unsafe(no_mangle)]
@@ -58,7 +56,6 @@ pub extern "C" fn lb_status_text(status: lb_status) -> *const c_char {
         LB_ERR_DATA => c"data: expected finite values and weights >= 0; give missing values weight 0",
         LB_ERR_TOO_FEW => c"data: fewer values than free parameters count",
         LB_ERR_COUNT => c"count: expected at least 1, and no band beyond the table",
-        LB_ERR_WORKSPACE => c"workspace: too small",
         LB_ERR_INTERIOR => c"interior: a parameter of PROSPECT is outside its limits; check its unit",
         LB_ERR_WAVELENGTH => c"wavelengths: expected rising, inside the slice of PROSPECT",
         _ => c"unknown status",

@@ -2,7 +2,7 @@
 
 use core::mem::MaybeUninit;
 
-use leafbrdf_core::{Angle, Dielectric, DirectionCosines, DomainError, Geometry, Index, Leaf, Normalization, Surface};
+use leafbrdf_core::{Dielectric, DirectionCosines, DomainError, Geometry, Index, Leaf, Normalization, Real, Surface};
 
 use crate::number::{Number, float, number};
 use crate::status::{
@@ -60,9 +60,13 @@ pub struct lb_gradient {
 }
 
 impl lb_leaf {
+    /// k_L/pi, the diffuse part.
     #[inline(always)]
-    pub(crate) fn checked(&self) -> Result<Leaf<Number>, lb_status> {
-        Leaf::new(number(self.k_lambert), self.surface()?).map_err(|_| LB_ERR_K_LAMBERT)
+    pub(crate) fn diffuse(&self) -> Result<Number, lb_status> {
+        if !(0.0..=1.0).contains(&self.k_lambert) {
+            return Err(LB_ERR_K_LAMBERT);
+        }
+        Ok(number(self.k_lambert) * Number::lit(core::f64::consts::FRAC_1_PI))
     }
 
     /// n, sigma and normalization; k_lambert is not looked at.
@@ -88,31 +92,20 @@ pub(crate) fn normalization(code: u32) -> Result<Normalization, lb_status> {
 
 impl lb_cosines {
     #[inline(always)]
-    pub(crate) fn checked(&self) -> Result<Geometry<Number>, lb_status> {
-        Geometry::from_cosines(DirectionCosines {
+    pub(crate) fn numbers(&self) -> DirectionCosines<Number> {
+        DirectionCosines {
             cos_theta_s: number(self.cos_theta_s),
             sin_theta_s: number(self.sin_theta_s),
             cos_theta_v: number(self.cos_theta_v),
             sin_theta_v: number(self.sin_theta_v),
             cos_phi_v: number(self.cos_phi_v),
-        })
-        .map_err(|error| direction(&error))
+        }
     }
 }
 
-/// Directions from angles in degrees.
-#[inline(always)]
-pub(crate) fn from_degrees(
-    theta_s_deg: f32,
-    theta_v_deg: f32,
-    phi_v_deg: f32,
-) -> Result<Geometry<Number>, lb_status> {
-    let angle = |degrees| Angle::from_degrees(number(degrees));
-    Geometry::from_angles(angle(theta_s_deg), angle(theta_v_deg), angle(phi_v_deg)).map_err(|error| direction(&error))
-}
-
 /// Which angle the model refused.
-pub(crate) fn direction(error: &DomainError) -> lb_status {
+#[inline(always)]
+pub(crate) fn direction(error: DomainError) -> lb_status {
     match error.parameter.as_bytes() {
         [b't', .., b's'] => LB_ERR_THETA_S,
         [b't', .., b'v'] => LB_ERR_THETA_V,
@@ -150,7 +143,8 @@ pub extern "C" fn lb_fresnel(n: f32, cos_theta_a: f32, fresnel: Option<&mut Mayb
 
 /// BRDF of a leaf in sr^-1 (Eqs 3, 4, 10) from sines and cosines.
 ///
-/// Relative error below 1e-5 where tan^2(alpha)/sigma^2 < 14, 2.5e-5 below 80.
+/// Relative error below 1e-5 where tan^2(alpha)/sigma^2 < 14, 2.5e-5 below 80. That a sine and a cosine belong together
+/// is not checked here (lb_brdf_gradient does).
 #[unsafe(no_mangle)]
 pub extern "C" fn lb_brdf(
     leaf: Option<&lb_leaf>,
@@ -158,8 +152,12 @@ pub extern "C" fn lb_brdf(
     brdf: Option<&mut MaybeUninit<f32>>,
 ) -> lb_status {
     let (Some(leaf), Some(at), Some(out)) = (leaf, at, brdf) else { return LB_ERR_NULL };
-    let value = |leaf: &lb_leaf| Ok(float(leaf.checked()?.brdf(&at.checked()?)));
-    give(out, value(leaf))
+    let value = || {
+        let diffuse = leaf.diffuse()?;
+        let specular = leaf.surface()?.brdf_at_cosines(&at.numbers()).map_err(direction)?;
+        Ok(float(diffuse + specular))
+    };
+    give(out, value())
 }
 
 /// BRDF and its exact derivatives with respect to k_L, n and sigma, sr^-1.
@@ -170,8 +168,10 @@ pub extern "C" fn lb_brdf_gradient(
     gradient: Option<&mut MaybeUninit<lb_gradient>>,
 ) -> lb_status {
     let (Some(leaf), Some(at), Some(out)) = (leaf, at, gradient) else { return LB_ERR_NULL };
-    let value = |leaf: &lb_leaf| {
-        let gradient = leaf.checked()?.brdf_with_gradient(&at.checked()?);
+    let value = || {
+        let leaf = Leaf::new(number(leaf.k_lambert), leaf.surface()?).map_err(|_| LB_ERR_K_LAMBERT)?;
+        let geometry = Geometry::from_cosines(at.numbers()).map_err(direction)?;
+        let gradient = leaf.brdf_with_gradient(&geometry);
         Ok(lb_gradient {
             value: float(gradient.value),
             d_k_lambert: float(gradient.d_k_lambert),
@@ -179,7 +179,7 @@ pub extern "C" fn lb_brdf_gradient(
             d_sigma: float(gradient.d_sigma),
         })
     };
-    give(out, value(leaf))
+    give(out, value())
 }
 
 /// BRDF of a leaf in sr^-1 from angles in degrees.
@@ -199,6 +199,11 @@ pub extern "C" fn lb_brdf_from_degrees(
     brdf: Option<&mut MaybeUninit<f32>>,
 ) -> lb_status {
     let (Some(leaf), Some(out)) = (leaf, brdf) else { return LB_ERR_NULL };
-    let value = |leaf: &lb_leaf| Ok(float(leaf.checked()?.brdf(&from_degrees(theta_s_deg, theta_v_deg, phi_v_deg)?)));
-    give(out, value(leaf))
+    let value = || {
+        let diffuse = leaf.diffuse()?;
+        let [theta_s, theta_v, phi_v] = [theta_s_deg, theta_v_deg, phi_v_deg].map(number);
+        let specular = leaf.surface()?.brdf_at_degrees(theta_s, theta_v, phi_v).map_err(direction)?;
+        Ok(float(diffuse + specular))
+    };
+    give(out, value())
 }

@@ -8,7 +8,12 @@ fn the_header_is_generated_from_the_source() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).expect("cbindgen.toml reads");
     let mut header = Vec::new();
-    cbindgen::Builder::new().with_crate(root).with_config(config).generate().expect("the source reads").write(&mut header);
+    cbindgen::Builder::new()
+        .with_crate(root)
+        .with_config(config)
+        .generate()
+        .expect("the source reads")
+        .write(&mut header);
     let header = String::from_utf8(header).expect("UTF-8");
     let path = root.join("include/leafbrdf.h");
     if std::env::var_os("LEAFBRDF_BLESS").is_some() {
