@@ -8,6 +8,7 @@
 //! | `dhrf` | diffuse and specular DHRF for each θ_s (Fig. 6), and the share that never entered the leaf (§4.4) |
 //! | `principal_plane` | cuts through the plane of incidence, with residuals |
 //! | `valley` | χ² over n and σ |
+//! | `model` | the fitted model at any direction |
 //! | `results` | what `fit` wrote, read back |
 //! | `svg`, `axes`, `style`, `colour`, `contour`, `png` | the tools |
 //!
@@ -20,6 +21,7 @@ mod contour;
 mod dhrf;
 mod figures;
 mod hemisphere_map;
+mod model;
 #[cfg(feature = "png")]
 mod png;
 mod principal_plane;
@@ -70,7 +72,7 @@ pub enum Kind {
 }
 
 /// What to draw.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct PlotOptions {
     /// Wavelengths of the maps, nm; the nearest that were fitted are taken.
     pub wavelengths_nm: Vec<f64>,
@@ -150,8 +152,7 @@ pub fn plot(folder: &Path, options: &PlotOptions) -> Result<Plotted, PlotError> 
             match results.measurement(options.measurement.as_deref(), &options.read) {
                 Ok(measurement) => Some(measurement),
                 Err(why) => {
-                    let sentence =
-                        format!("{}: maps, density, cuts and valley are left out: {why}", results.leaf);
+                    let sentence = format!("{}: maps, density, cuts and valley are left out: {why}", results.leaf);
                     plotted.left_out.push(sentence);
                     None
                 }

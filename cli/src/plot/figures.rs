@@ -1,10 +1,11 @@
 //! Which figures a fit has.
 
 use super::hemisphere_map::{Column, Dot, hemisphere_map};
+use super::model::BandModel;
 use super::principal_plane::{Cut, OUT_OF_PLANE_DEG, principal_plane};
-use super::results::{BandModel, Results};
+use super::results::Results;
 use super::svg::literal;
-use super::valley::{Band, valley};
+use super::valley::{Values, valley};
 use super::{PlotError, PlotOptions, dhrf, scatter, spectra};
 use crate::measurement::Measurement;
 
@@ -230,26 +231,42 @@ fn cuts(made: &mut Made, results: &Results, measurement: &Measurement) -> Result
     let svg = principal_plane(&format!("{leaf}-plane"), &title, &note, &cuts, &model, rmse);
     made.add(leaf, "principal-plane", caption, svg);
 
-    let weighted = results.summary.get("weights").and_then(serde_json::Value::as_str) == Some("1/sd^2");
+    let of = |columns: &[Vec<f64>; 3]| [columns[1][band], columns[2][band]];
+    let mut errors = of(&bands.errors);
+    let mut correlation = None;
     let width = measurement.directions.len();
     let brdf = measurement.brdf();
+    let column_of = |place: usize, i: usize| brdf.get(place * width + i).copied().unwrap_or(f64::NAN);
+    // One n and σ for the leaf: the mean over the bands has its valley where their sum has it. Its depth is not the fit's,
+    // whose residuals are alike in neighbouring bands, so the regions come from the fit's own errors.
+    let whole = results.model != "bands";
+    let value: Box<dyn Fn(usize) -> f64> = if whole {
+        errors = ["n", "sigma"].map(|name| results.number(name, "standard_error").unwrap_or(f64::NAN));
+        correlation = Some(results.correlation("n", "sigma").unwrap_or(0.0));
+        let places = bands.wavelengths_nm.iter();
+        let places: Vec<usize> =
+            places.filter_map(|nm| measurement.wavelengths_nm.iter().position(|other| other == nm)).collect();
+        Box::new(move |i| places.iter().map(|&place| column_of(place, i)).sum::<f64>() / places.len() as f64)
+    } else {
+        Box::new(move |i| column_of(place, i))
+    };
+    let weighted = results.summary.get("weights").and_then(serde_json::Value::as_str) == Some("1/sd^2") && !whole;
     let sd = measurement.brdf_sd().filter(|_| weighted);
     let values =
         measurement.directions.iter().enumerate().filter(|(_, d)| d.theta_v_deg <= limit).filter_map(|(i, d)| {
             let weight = sd.as_ref().map_or(1.0, |sd| 1.0 / (sd[place * width + i] * sd[place * width + i]));
-            Band::value([d.theta_s_deg, d.theta_v_deg, d.phi_v_deg], brdf[place * width + i], weight)
+            Values::value([d.theta_s_deg, d.theta_v_deg, d.phi_v_deg], value(i), weight)
         });
-    let of = |columns: &[Vec<f64>; 3]| [columns[1][band], columns[2][band]];
-    let valley_band = Band {
-        values: values.collect(),
-        fitted: of(&bands.values),
-        errors: of(&bands.errors),
-        normalization: results.normalization(),
+    let values =
+        Values { values: values.collect(), fitted: of(&bands.values), errors, correlation, shape: results.shape()? };
+    let (place, regions) = match whole {
+        true => ("of the mean over the bands".to_string(), "; regions from the fit's standard errors and correlation"),
+        false => (format!("at {nm} nm"), ""),
     };
-    let title = format!("{shown}: χ² over n and σ at {nm} nm");
-    let note = format!("k_L at its best everywhere; cross: the fit; {}", convention(results));
-    let caption = format!("Valley of χ² over n and σ at {nm} nm, and the joint confidence of the two");
-    made.add(leaf, "valley", caption, valley(&format!("{leaf}-valley"), &title, &note, &valley_band));
+    let title = format!("{shown}: χ² over n and σ {place}");
+    let note = format!("k_L at its best everywhere; cross: the fit{regions}; {}", convention(results));
+    let caption = format!("Valley of χ² over n and σ {place}, and the joint confidence of the two");
+    made.add(leaf, "valley", caption, valley(&format!("{leaf}-valley"), &title, &note, &values));
     Ok(())
 }
 

@@ -1,7 +1,7 @@
 //! Cuts through the plane of incidence: measured values, the model, and their difference, one panel a source.
 
 use super::axes::{Axis, Frame, Unit};
-use super::results::BandModel;
+use super::model::BandModel;
 use super::style::{HAIR, SMALL_PX, TEXT_PX, series};
 use super::svg::{Stroke, Svg, TextStyle};
 
@@ -122,8 +122,8 @@ pub fn principal_plane(
 fn source_mark(svg: &mut Svg, frame: &Frame, theta_s_deg: f64) {
     let [x, y] = frame.at(-theta_s_deg, frame.y.from);
     svg.line([x, y], [x, frame.top], Stroke { colour: "#e8590c", width: 1.0, dash: "2 4" });
-    let style = TextStyle { size: 12.0, colour: Some("#b34700"), ..TextStyle::default() };
-    svg.text([x + 5.0, frame.top + 14.0], "source", style);
+    let style = TextStyle { size: 12.0, colour: Some("#b34700"), ..TextStyle::end() };
+    svg.text([x - 5.0, frame.top + 14.0], "source", style);
 }
 
 /// Fitted values as filled discs, others open.

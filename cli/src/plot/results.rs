@@ -1,14 +1,14 @@
 //! What `fit` wrote into a leaf's folder, and the measurement behind it.
 
 use std::collections::BTreeMap;
-use std::f64::consts::PI;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use leafbrdf_core::{Angle, DomainError, Geometry, Normalization, Surface};
+use leafbrdf_core::Normalization;
 use serde_json::Value;
 
 use super::PlotError;
+use super::model::{BandModel, Shape};
 use crate::measurement::{Measurement, ReadOptions, read_path};
 
 /// A table read by the names of its columns.
@@ -138,16 +138,33 @@ impl Results {
         conventions.into_iter().find(|one| Some(one.name()) == name).unwrap_or_default()
     }
 
+    /// Facets, diffuse term and tilt of the fit.
+    ///
+    /// # Errors
+    /// A model that is not drawn.
+    pub fn shape(&self) -> Result<Shape, PlotError> {
+        Shape::of_summary(&self.summary).map_err(PlotError)
+    }
+
     /// The model at one band, as fitted.
     ///
     /// # Errors
-    /// Parameters outside the model's domain: not what `fit` wrote.
+    /// A model that is not drawn, or parameters outside its domain: not what `fit` wrote.
     pub fn model_at(&self, band: usize) -> Result<BandModel, PlotError> {
-        let bands = self.bands.as_ref().ok_or_else(|| PlotError("no bands.csv".to_string()))?;
+        let bands = self.bands.as_ref().ok_or_else(|| PlotError("there is no bands.csv".to_string()))?;
         let [k_l, n, sigma] = [0, 1, 2].map(|p| bands.values[p].get(band).copied().unwrap_or(f64::NAN));
-        let wrong = |error: DomainError| PlotError(format!("{}: bands.csv: {error}", self.folder.display()));
-        let surface = Surface::new(n, sigma).map_err(wrong)?.with_normalization(self.normalization());
-        Ok(BandModel { k_l, surface })
+        let surface = self.shape()?.surface(n, sigma);
+        Ok(BandModel { k_l, surface: surface.map_err(|error| PlotError(format!("bands.csv: {error}")))? })
+    }
+
+    /// A number of a parameter in `summary.json`, such as its `standard_error`.
+    pub fn number(&self, parameter: &str, what: &str) -> Option<f64> {
+        self.summary.get("parameters")?.get(parameter)?.get(what)?.as_f64()
+    }
+
+    /// The correlation of two parameters, where `summary.json` has it.
+    pub fn correlation(&self, one: &str, other: &str) -> Option<f64> {
+        self.summary.get("correlations")?.get(format!("{one},{other}"))?.as_f64()
     }
 
     /// θ_v above which directions took no part in the fit, degrees.
@@ -180,25 +197,5 @@ impl Results {
         let mut all = leaves.into_iter();
         let alone = if count == 1 && asked.is_some() { all.next() } else { all.find(|leaf| leaf.name == self.leaf) };
         alone.ok_or_else(|| PlotError(format!("{}: no leaf {} among its {count}: {remedy}", path.display(), self.leaf)))
-    }
-}
-
-/// The model at one wavelength.
-#[derive(Clone, Copy, Debug)]
-pub struct BandModel {
-    /// k_L.
-    pub k_l: f64,
-    /// n, σ and the convention for K.
-    pub surface: Surface<f64>,
-}
-
-impl BandModel {
-    /// BRDF in sr⁻¹ from θ_s to (θ_v, φ_v), degrees; NaN at or below the horizon.
-    pub fn brdf(&self, theta_s_deg: f64, theta_v_deg: f64, phi_v_deg: f64) -> f64 {
-        let deg = Angle::from_degrees;
-        match Geometry::from_angles(deg(theta_s_deg), deg(theta_v_deg), deg(phi_v_deg)) {
-            Ok(geometry) => self.k_l / PI + self.surface.brdf(&geometry),
-            Err(_) => f64::NAN,
-        }
     }
 }

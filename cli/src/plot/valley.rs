@@ -1,49 +1,53 @@
 //! χ² over n and σ, k_L always at its best: how well the two are known, and how alone the minimum is.
 
-use std::f64::consts::PI;
-
-use leafbrdf_core::{Angle, Geometry, Normalization, Surface};
+use leafbrdf_core::DirectionVectors;
 
 use super::axes::{Axis, Frame, Unit};
 use super::colour::hex;
 use super::contour::{Grid, path};
+use super::model::{Shape, directions};
 use super::style::{INK, PAPER, SMALL_PX};
 use super::svg::{Anchor, Stroke, Svg, TextStyle, number};
 
-/// One band's values and the surface that was fitted to them.
-pub struct Band {
-    /// Geometry, BRDF in sr⁻¹ and weight of each value.
-    pub values: Vec<(Geometry<f64>, f64, f64)>,
+/// Values that share one diffuse coefficient, and the surface that was fitted to them.
+pub struct Values {
+    /// Directions, BRDF in sr⁻¹ and weight of each value.
+    pub values: Vec<(DirectionVectors<f64>, f64, f64)>,
     /// n and σ as fitted.
     pub fitted: [f64; 2],
     /// Their standard errors, NaN where there are none.
     pub errors: [f64; 2],
-    /// The convention for K.
-    pub normalization: Normalization,
+    /// Their correlation, where the regions of confidence are to follow from the errors rather than from χ².
+    pub correlation: Option<f64>,
+    /// Facets, diffuse term, tilt.
+    pub shape: Shape,
 }
 
-impl Band {
-    /// A value that takes part; `None` at or below the horizon or without a number.
-    pub fn value(angles_deg: [f64; 3], brdf: f64, weight: f64) -> Option<(Geometry<f64>, f64, f64)> {
-        let [theta_s, theta_v, phi_v] = angles_deg.map(Angle::from_degrees);
-        let geometry = Geometry::from_angles(theta_s, theta_v, phi_v).ok()?;
-        (brdf.is_finite() && weight > 0.0 && weight.is_finite()).then_some((geometry, brdf, weight))
+impl Values {
+    /// A value that takes part; `None` at or below the horizon, without a number or without weight.
+    pub fn value(angles_deg: [f64; 3], brdf: f64, weight: f64) -> Option<(DirectionVectors<f64>, f64, f64)> {
+        let [theta_s, theta_v, phi_v] = angles_deg;
+        let directions = directions(theta_s, theta_v, phi_v)?;
+        (brdf.is_finite() && weight > 0.0 && weight.is_finite()).then_some((directions, brdf, weight))
     }
 
-    /// χ² at n and σ with the best k_L, which enters linearly. NaN outside the model's domain.
+    /// χ² at n and σ with the best k_L ≥ 0, which enters linearly. NaN outside the model's domain.
     fn chi2(&self, n: f64, sigma: f64) -> f64 {
-        let Ok(surface) = Surface::new(n, sigma) else { return f64::NAN };
-        let surface = surface.with_normalization(self.normalization);
-        let (mut weights, mut sum, mut squares) = (0.0, 0.0, 0.0);
-        for (geometry, brdf, weight) in &self.values {
-            let rest = brdf - surface.brdf(geometry);
-            weights += weight;
-            sum += weight * rest;
+        let Ok(surface) = self.shape.surface(n, sigma) else { return f64::NAN };
+        let (mut shapes, mut sum, mut squares) = (0.0, 0.0, 0.0);
+        for (directions, brdf, weight) in &self.values {
+            let [diffuse, specular] = surface.parts(directions);
+            if specular.is_nan() {
+                continue;
+            }
+            let rest = brdf - specular;
+            shapes += weight * diffuse * diffuse;
+            sum += weight * rest * diffuse;
             squares += weight * rest * rest;
         }
-        // Σ w (r − k/π)² at k/π = Σ w r / Σ w, or at 0 where that is negative
-        let ground = (sum / weights).max(0.01 / PI);
-        squares - 2.0 * ground * sum + ground * ground * weights
+        // Σ w (r − k d)² is least at k = Σ w r d / Σ w d²
+        let k_l = (sum / shapes).max(0.0);
+        squares - 2.0 * k_l * sum + k_l * k_l * shapes
     }
 }
 
@@ -51,10 +55,10 @@ const SIDE: f64 = 400.0;
 const NODES: usize = 91;
 
 /// The whole valley on the left, the minimum on the right.
-pub fn valley(prefix: &str, title: &str, note: &str, band: &Band) -> Result<String, String> {
-    let [n, sigma] = band.fitted;
-    let least = band.chi2(n, sigma);
-    let freedom = band.values.len() as f64 - 3.0;
+pub fn valley(prefix: &str, title: &str, note: &str, values: &Values) -> Result<String, String> {
+    let [n, sigma] = values.fitted;
+    let least = values.chi2(n, sigma);
+    let freedom = values.values.len() as f64 - 3.0;
     if !(least > 0.0 && freedom >= 1.0) {
         return Err("χ² has no scale: the model meets every value, or there are too few".to_string());
     }
@@ -70,24 +74,24 @@ pub fn valley(prefix: &str, title: &str, note: &str, band: &Band) -> Result<Stri
         top,
         width: SIDE,
         height: SIDE,
-        x: Axis::exact(n_label, Unit::Unitless, 1.05, (1.6 * n).max(2.2), 9),
+        x: Axis::exact(n_label, Unit::Unitless, 1.05, 1.2 + 2.5 * (n - 1.0).max(0.16), 9),
         y: Axis::logarithmic(sigma_label, Unit::Unitless, (sigma / 4.0).max(0.01), (4.0 * sigma).min(1.2)),
     };
     let ratios = [1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0];
     let words = ratios.map(|ratio| format!("{ratio}"));
-    panel(&mut svg, &whole, band, |chi2| chi2 / least, &ratios, &words);
+    panel(&mut svg, &whole, values.fitted, |n, sigma| values.chi2(n, sigma) / least, &ratios, &words);
     whole.heading(&mut svg, "χ² / least χ²");
-    cross(&mut svg, &whole, band.fitted);
+    cross(&mut svg, &whole, values.fitted);
     whole.axes(&mut svg, true, true);
 
     // joint regions of two parameters: Δχ² = 2.30, 6.18, 11.83 times the variance of a value (68.3, 95.4, 99.7 %)
     let variance = least / freedom;
     let reach = |p: usize| {
-        let error = band.errors[p];
-        if error.is_finite() && error > 0.0 { 4.2 * error } else { 0.03 * band.fitted[p] }
+        let error = values.errors[p];
+        if error.is_finite() && error > 0.0 { 4.2 * error } else { 0.03 * values.fitted[p] }
     };
     let around = |quantity: &str, p: usize, count: usize| {
-        let (middle, reach) = (band.fitted[p], reach(p));
+        let (middle, reach) = (values.fitted[p], reach(p));
         Axis::exact(
             quantity,
             Unit::Unitless,
@@ -106,20 +110,34 @@ pub fn valley(prefix: &str, title: &str, note: &str, band: &Band) -> Result<Stri
     };
     let levels = [2.30, 6.18, 11.83];
     let words = ["68 %", "95 %", "99.7 %"].map(String::from);
-    panel(&mut svg, &near, band, |chi2| (chi2 - least) / variance, &levels, &words);
+    let region = |n: f64, sigma: f64| match values.correlation {
+        None => (values.chi2(n, sigma) - least) / variance,
+        Some(correlation) => {
+            let [x, y] = [(n - values.fitted[0]) / values.errors[0], (sigma - values.fitted[1]) / values.errors[1]];
+            (x * x - 2.0 * correlation * x * y + y * y) / (1.0 - correlation * correlation)
+        }
+    };
+    panel(&mut svg, &near, values.fitted, region, &levels, &words);
     near.heading(&mut svg, "joint confidence of n and σ");
-    cross(&mut svg, &near, band.fitted);
+    cross(&mut svg, &near, values.fitted);
     near.axes(&mut svg, true, true);
     svg.text([left, top + SIDE + 78.0], note, TextStyle { size: SMALL_PX, ..TextStyle::default() });
     Ok(svg.finish())
 }
 
 /// Filled rings, the innermost darkest, each line with its number.
-fn panel(svg: &mut Svg, frame: &Frame, band: &Band, height: impl Fn(f64) -> f64, levels: &[f64], words: &[String]) {
+fn panel(
+    svg: &mut Svg,
+    frame: &Frame,
+    fitted: [f64; 2],
+    height: impl Fn(f64, f64) -> f64,
+    levels: &[f64],
+    words: &[String],
+) {
     let part = |node: usize| node as f64 / (NODES - 1) as f64;
     let grid = Grid::new(NODES, NODES, |i, j| {
         // the grid's set is where −χ² is at least −level
-        -height(band.chi2(frame.x.value(part(i)), frame.y.value(1.0 - part(j))))
+        -height(frame.x.value(part(i)), frame.y.value(1.0 - part(j)))
     });
     let step = SIDE / (NODES - 1) as f64;
     let at = |x: f64, y: f64| [frame.left + step * x, frame.top + step * y];
@@ -135,7 +153,7 @@ fn panel(svg: &mut Svg, frame: &Frame, band: &Band, height: impl Fn(f64) -> f64,
         lines.push((loops, words[place].clone()));
     }
     svg.end();
-    let mut taken: Vec<[f64; 2]> = vec![frame.at(band.fitted[0], band.fitted[1])];
+    let mut taken: Vec<[f64; 2]> = vec![frame.at(fitted[0], fitted[1])];
     for (loops, word) in lines.iter().rev() {
         // where the line is inside the frame and far from the labels already there
         let inside = |[x, y]: &[f64; 2]| {
@@ -186,19 +204,19 @@ mod tests {
 
     #[test]
     fn chi2_is_least_at_the_truth_and_does_not_depend_on_the_ground() {
-        let surface = Surface::new(1.56, 0.29).unwrap();
-        let of = |ground: f64| {
+        let shape = Shape::of_summary(&serde_json::json!({})).unwrap();
+        let surface = shape.surface(1.56, 0.29).unwrap();
+        let of = |k_l: f64| {
             let angles =
                 (0..60).map(|i| [20.0 + 10.0 * f64::from(i % 5), 1.1 * f64::from(i), 180.0 - f64::from(i % 7)]);
-            let values = angles.map(|angles| {
-                let [s, v, phi] = angles.map(Angle::from_degrees);
-                let geometry = Geometry::from_angles(s, v, phi).unwrap();
-                (geometry, ground + surface.brdf(&geometry), 1.0)
+            let values = angles.map(|[theta_s, theta_v, phi_v]| {
+                let directions = directions(theta_s, theta_v, phi_v).unwrap();
+                let [diffuse, specular] = surface.parts(&directions);
+                (directions, k_l * diffuse + specular, 1.0)
             });
-            let normalization = Normalization::Bousquet2005;
-            Band { values: values.collect(), fitted: [1.56, 0.29], errors: [0.01, 0.01], normalization }
+            Values { values: values.collect(), fitted: [1.56, 0.29], errors: [0.01, 0.01], correlation: None, shape }
         };
-        let (dark, bright) = (of(0.02), of(0.15));
+        let (dark, bright) = (of(0.2), of(0.5));
         assert!(dark.chi2(1.56, 0.29) < 1e-20);
         for (n, sigma) in [(1.5, 0.29), (1.6, 0.29), (1.56, 0.25), (1.56, 0.33)] {
             assert!(dark.chi2(n, sigma) > 1e-8);
