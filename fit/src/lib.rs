@@ -11,6 +11,8 @@ mod bounds;
 mod error;
 pub mod hemispherical;
 #[cfg(feature = "std")]
+pub mod leaf;
+#[cfg(feature = "std")]
 mod leaf_bands;
 mod linear;
 pub mod solver;

@@ -43,4 +43,6 @@ pub use errors::{Errors, Knowledge};
 #[cfg(feature = "std")]
 pub use leaf::{SurfaceBand, SurfaceData, SurfaceFit, SurfaceOptions, fit_surface};
 #[cfg(feature = "std")]
+pub(crate) use leaf::settle;
+#[cfg(feature = "std")]
 pub use spectra::Spectra;

@@ -267,7 +267,7 @@ fn used_directions(data: &SurfaceData<'_>) -> usize {
 }
 
 /// Tilts within what keeps every direction above the horizon; what the directions cannot see, held at 0.
-fn settle(
+pub(crate) fn settle(
     model: &LeafModel<'_, f64>,
     options: &SurfaceOptions,
 ) -> Result<([Treatment<f64>; PARAMETERS], [bool; PARAMETERS]), FitError> {

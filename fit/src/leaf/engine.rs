@@ -1,0 +1,485 @@
+//! χ² of a whole leaf with exact derivatives by all of its parameters.
+//!
+//! ```text
+//! BRDF(λ, v) = k_L(λ) · s_v(a, b, tilt) + p_v(n, σ, tilt),   k_L from the interior by a coupling (Eqs 17, 18)
+//! ∂BRDF      = s ∂k_L + k_L ∂s + ∂p
+//! ```
+//!
+//! Everything is in reflectance (π · BRDF). Directions are independent of each other, wavelengths as a [`ResidualModel`] says.
+
+use std::vec;
+use std::vec::Vec;
+
+use leafbrdf_core::{Angle, DhrfGradient, DomainError, Grade, Illumination, Normalization, Surface};
+use leafbrdf_prospect::{Coupling, Jacobian, LeafParams, Link, Parameter, Prospect, TwoLayer};
+
+use super::parameters::{Axis, COUNT, GAIN, INTERIOR, OFFSET, Prior, Treatment, interior, place};
+use super::recipe::Interior;
+use super::residuals::{ResidualModel, Whitening};
+use crate::bounds::Interval;
+use crate::solver::{Evaluation, Minimum, Objective, SolverOptions, minimize};
+use crate::surface::model::{N, PARAMETERS, SIGMA};
+use crate::surface::{DirectionValue, DirectionalModel, FacetKind, LeafModel};
+
+/// What a leaf is made of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Model<'a> {
+    /// PROSPECT at the measured wavelengths.
+    pub prospect: Prospect<'a, f64>,
+    pub interior: Interior,
+    pub coupling: Coupling,
+    /// n is a coefficient on the tabulated index: PROSPECULAR's surface.
+    pub scaled_index: bool,
+    /// The directions with their surface; without it the measurement is a single diffuse reflectance.
+    pub surface: Option<LeafModel<'a, f64>>,
+}
+
+/// What was measured, in reflectance: direction by direction, one value a band, NaN where missing.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Measured<'a> {
+    pub wavelengths_nm: &'a [f64],
+    pub brf: &'a [f64],
+    /// Standard deviations; they multiply the white part of the residual model.
+    pub sd: Option<&'a [f64]>,
+}
+
+/// k_L and its derivatives, over all bands.
+pub(super) struct Diffuse {
+    pub k: Vec<f64>,
+    /// One run of bands for each parameter; empty where the derivative is 0.
+    pub slopes: [Vec<f64>; COUNT],
+}
+
+/// Room that one search after the other uses.
+struct Room {
+    r: Vec<f64>,
+    t: Vec<f64>,
+    dr: Vec<f64>,
+    dt: Vec<f64>,
+    by_share: Vec<f64>,
+}
+
+/// χ² as a function of the coordinates.
+pub(super) struct Cost<'a> {
+    pub model: Model<'a>,
+    pub measured: Measured<'a>,
+    pub axes: [Axis; COUNT],
+    pub priors: [Option<Prior>; COUNT],
+    /// What one squared standard deviation of a prior weighs, in units of χ².
+    pub prior_weight: f64,
+    whitenings: Vec<Whitening>,
+    /// Which whitening each direction has: those without gaps share the first.
+    whitening_of: Vec<usize>,
+    room: Room,
+    columns: Vec<f64>,
+}
+
+/// χ² without priors, with the normal matrix of all free parameters, by the parameters themselves.
+#[derive(Clone, Debug)]
+pub(super) struct Normal {
+    pub chi2: f64,
+    /// Jᵀr and JᵀJ of whitened residuals r = measured − modelled.
+    pub score: [f64; COUNT],
+    pub matrix: [[f64; COUNT]; COUNT],
+    /// Jᵀ of further columns asked for: ∂/∂ln N, ∂/∂f, ∂/∂λ.
+    pub held: [[f64; COUNT]; 3],
+}
+
+impl<'a> Cost<'a> {
+    pub fn new(
+        model: Model<'a>,
+        measured: Measured<'a>,
+        residuals: &ResidualModel,
+        treatments: &[Treatment; COUNT],
+        prior_weight: f64,
+    ) -> Self {
+        let bands = measured.wavelengths_nm.len();
+        let mut whitenings = Vec::new();
+        let mut whitening_of = Vec::new();
+        let mut full = None;
+        for (direction, values) in measured.brf.chunks_exact(bands.max(1)).enumerate() {
+            let gapless = values.iter().all(|y| !y.is_nan()) && measured.sd.is_none();
+            if let (true, Some(shared)) = (gapless, full) {
+                whitening_of.push(shared);
+                continue;
+            }
+            let scale = |band: usize| match measured.sd {
+                _ if values.get(band).is_none_or(|y| y.is_nan()) => 0.0,
+                Some(sd) => sd.get(direction * bands + band).copied().unwrap_or(0.0),
+                None => 1.0,
+            };
+            whitenings.push(Whitening::new(residuals, measured.wavelengths_nm, scale));
+            whitening_of.push(whitenings.len() - 1);
+            if gapless {
+                full = Some(whitenings.len() - 1);
+            }
+        }
+        let free = treatments.iter().filter(|one| one.is_free()).count();
+        let axes: [Axis; COUNT] = core::array::from_fn(|i| Axis::new(i, &treatments[i]));
+        let wanted = Parameter::ALL.len();
+        Cost {
+            model,
+            measured,
+            axes,
+            priors: treatments.map(|one| one.prior()),
+            prior_weight,
+            whitenings,
+            whitening_of,
+            room: Room {
+                r: vec![0.0; bands],
+                t: vec![0.0; bands],
+                dr: vec![0.0; wanted * bands],
+                dt: vec![0.0; wanted * bands],
+                by_share: vec![0.0; bands],
+            },
+            columns: vec![0.0; (free + 4) * bands],
+        }
+    }
+
+    /// Values that count.
+    pub fn used(&self) -> usize {
+        self.whitening_of.iter().filter_map(|i| self.whitenings.get(*i)).map(Whitening::used).sum()
+    }
+
+    /// The parameters at u, and their slopes.
+    pub fn parameters(&self, u: &[f64; COUNT]) -> ([f64; COUNT], [f64; COUNT]) {
+        let mut slopes = [0.0; COUNT];
+        let x = core::array::from_fn(|i| {
+            let (x, slope) = self.axes[i].value(u[i]);
+            slopes[i] = slope;
+            x
+        });
+        (x, slopes)
+    }
+
+    /// The coordinates of x, inside the bounds.
+    pub fn coordinates(&self, x: &[f64; COUNT]) -> [f64; COUNT] {
+        core::array::from_fn(|i| self.axes[i].coordinate(x[i]))
+    }
+
+    fn is_free(&self, i: usize) -> bool {
+        !matches!(self.axes[i], Axis::Held(_))
+    }
+
+    /// k_L with derivatives by the free parameters; with `held`, ∂k_L/∂N and ∂k_L/∂f too.
+    pub fn diffuse(&mut self, x: &[f64; COUNT], held: bool) -> Result<Diffuse, leafbrdf_prospect::Error> {
+        let model = self.model;
+        let view = model.prospect.view();
+        let bands = view.len();
+        let leaf = leaf_of(x);
+        let free: [bool; COUNT] = core::array::from_fn(|i| self.is_free(i));
+        let wanted: Vec<Parameter> = Parameter::ALL
+            .into_iter()
+            .filter(|one| self.is_free(place(*one)) || (held && *one == Parameter::NStruct))
+            .collect();
+        let Room { r, t, dr, dt, by_share } = &mut self.room;
+        let (dr, dt) = (&mut dr[..wanted.len() * bands], &mut dt[..wanted.len() * bands]);
+        let t_alpha = view.t_alpha();
+        let mut k = vec![0.0; bands];
+        match model.interior {
+            Interior::Plain => {
+                let room = Jacobian {
+                    reflectance: &mut *r,
+                    transmittance: &mut *t,
+                    d_reflectance: &mut *dr,
+                    d_transmittance: dt,
+                };
+                model.prospect.jacobian(&leaf, &wanted, room)?;
+            }
+            Interior::TwoLayer { upper_share } => {
+                let interior = TwoLayer::new(model.prospect, upper_share)?;
+                interior.jacobian(&leaf, &wanted, r, dr, held.then_some(&mut by_share[..]))?;
+                // as R of a leaf whose first surface is PROSPECT's
+                r.iter_mut().zip(t_alpha).for_each(|(r, t_alpha)| *r += 1.0 - t_alpha);
+            }
+        }
+        let mut slopes = [const { Vec::new() }; COUNT];
+        let mut link = Link { dhrf_specular: 0.0, gain: x[GAIN], offset: x[OFFSET] };
+        let mut dhrf = DhrfGradient { value: 0.0, d_n: 0.0, d_sigma: 0.0 };
+        if let (Some(surface), true) = (model.surface, model.coupling.takes_surface()) {
+            dhrf = dhrf_at_zenith(&surface, x[N], x[SIGMA], Grade::E8)?;
+            link.dhrf_specular = dhrf.value;
+        }
+        let terms: Vec<_> =
+            r.iter().zip(t_alpha).map(|(r, t_alpha)| model.coupling.diffuse(*r, *t_alpha, &link)).collect();
+        for (k, term) in k.iter_mut().zip(&terms) {
+            *k = term.k_lambert;
+        }
+        for (parameter, column) in wanted.iter().zip(dr.chunks_exact(bands)) {
+            slopes[place(*parameter)] = column.iter().zip(&terms).map(|(d, term)| d * term.d_reflectance).collect();
+        }
+        let flat = |of: fn(&leafbrdf_prospect::DiffuseTerm<f64>) -> f64, factor: f64| -> Vec<f64> {
+            terms.iter().map(|term| factor * of(term)).collect()
+        };
+        if free[GAIN] {
+            slopes[GAIN] = flat(|term| term.d_gain, 1.0);
+        }
+        if free[OFFSET] {
+            slopes[OFFSET] = flat(|term| term.d_offset, 1.0);
+        }
+        if model.coupling.takes_surface() && model.surface.is_some() {
+            if free[N] {
+                slopes[N] = flat(|term| term.d_dhrf_specular, dhrf.d_n);
+            }
+            if free[SIGMA] {
+                slopes[SIGMA] = flat(|term| term.d_dhrf_specular, dhrf.d_sigma);
+            }
+        }
+        if held {
+            if matches!(model.interior, Interior::Plain) {
+                by_share.fill(0.0);
+            }
+            by_share.iter_mut().zip(&terms).for_each(|(d, term)| *d *= term.d_reflectance);
+        }
+        Ok(Diffuse { k, slopes })
+    }
+
+    /// χ², score and normal matrix at x.
+    pub fn normal(&mut self, x: &[f64; COUNT], held: bool) -> Result<Normal, leafbrdf_prospect::Error> {
+        let diffuse = self.diffuse(x, held)?;
+        let bands = diffuse.k.len();
+        let free: Vec<usize> = (0..COUNT).filter(|i| self.is_free(*i)).collect();
+        let lobes = Lobes::new(&self.model, x)?;
+        let mut normal =
+            Normal { chi2: 0.0, score: [0.0; COUNT], matrix: [[0.0; COUNT]; COUNT], held: [[0.0; COUNT]; 3] };
+        let pi = core::f64::consts::PI;
+        for (direction, measured) in self.measured.brf.chunks_exact(bands.max(1)).enumerate() {
+            let Some(whitening) = self.whitening_of.get(direction).and_then(|i| self.whitenings.get(*i)) else { break };
+            let (residual, rest) = self.columns.split_at_mut(bands);
+            for (band, (r, y)) in residual.iter_mut().zip(measured).enumerate() {
+                let value = lobes.at(direction, band);
+                *r = y - pi * (diffuse.k[band] * value.diffuse + value.specular);
+            }
+            whitening.apply(residual);
+            normal.chi2 += residual.iter().map(|r| r * r).sum::<f64>();
+            for (column, &i) in rest.chunks_exact_mut(bands).zip(&free) {
+                let slopes = &diffuse.slopes[i];
+                for (band, c) in column.iter_mut().enumerate() {
+                    let value = lobes.at(direction, band);
+                    let own = if i < PARAMETERS {
+                        let scale = lobes.index_scale(i, band);
+                        diffuse.k[band] * value.d_diffuse[i] + scale * value.d_specular[i]
+                    } else {
+                        0.0
+                    };
+                    *c = pi * (own + value.diffuse * slopes.get(band).copied().unwrap_or(0.0));
+                }
+                whitening.apply(column);
+            }
+            let columns = rest.get(..free.len() * bands).unwrap_or_default();
+            for (place, column) in columns.chunks_exact(bands).enumerate() {
+                let i = free[place];
+                normal.score[i] += dot(column, residual);
+                for (other, earlier) in columns.chunks_exact(bands).enumerate().take(place + 1) {
+                    normal.matrix[i][free[other]] += dot(column, earlier);
+                }
+            }
+            if held {
+                let (columns, extra) = rest.split_at_mut(free.len() * bands);
+                for kind in 0..3 {
+                    let extra = &mut extra[..bands];
+                    for (band, e) in extra.iter_mut().enumerate() {
+                        let value = lobes.at(direction, band);
+                        *e = match kind {
+                            0 => {
+                                let slopes = &diffuse.slopes[place(Parameter::NStruct)];
+                                pi * value.diffuse * x[INTERIOR] * slopes.get(band).copied().unwrap_or(0.0)
+                            }
+                            1 => pi * value.diffuse * self.room.by_share[band],
+                            // read at λ + δ what the model says of λ: as if the model were shifted the other way
+                            _ => slope_along(self.measured.wavelengths_nm, &diffuse.k, band) * pi * value.diffuse,
+                        };
+                    }
+                    whitening.apply(extra);
+                    for (place, column) in columns.chunks_exact(bands).enumerate() {
+                        normal.held[kind][free[place]] += dot(column, extra);
+                    }
+                }
+            }
+        }
+        for i in 0..COUNT {
+            for j in 0..i {
+                normal.matrix[j][i] = normal.matrix[i][j];
+            }
+        }
+        Ok(normal)
+    }
+
+    /// The modelled reflectance, direction by direction.
+    pub fn modelled(&mut self, x: &[f64; COUNT]) -> Result<Vec<f64>, leafbrdf_prospect::Error> {
+        let diffuse = self.diffuse(x, false)?;
+        let lobes = Lobes::new(&self.model, x)?;
+        let bands = diffuse.k.len();
+        let pi = core::f64::consts::PI;
+        Ok((0..self.whitening_of.len() * bands)
+            .map(|i| {
+                let (direction, band) = (i / bands, i % bands);
+                let value = lobes.at(direction, band);
+                pi * (diffuse.k[band] * value.diffuse + value.specular)
+            })
+            .collect())
+    }
+
+    /// Searches from a start.
+    pub fn search(&mut self, start: &[f64; COUNT], tolerance: f64, max_iterations: u32) -> Minimum<f64, COUNT> {
+        let bounds: [Interval<f64>; COUNT] = core::array::from_fn(|i| self.axes[i].bounds());
+        let u = self.coordinates(start);
+        let max_step = core::array::from_fn(|i| match self.axes[i] {
+            // logarithms of contents: no more than a factor of 4.5 at once
+            Axis::Log(_) => 1.5,
+            Axis::Fresnel(_) => 1.0,
+            Axis::Shifted(bounds, origin) => 0.35 * ((bounds.upper + origin) / (bounds.lower + origin)).ln(),
+            Axis::Plain(_) if i < PARAMETERS => 0.25,
+            _ => 1.5,
+        });
+        minimize(self, &bounds, &u, &SolverOptions { tolerance, max_iterations, max_step })
+    }
+}
+
+impl Objective<f64, COUNT> for Cost<'_> {
+    fn evaluate(&mut self, u: &[f64; COUNT]) -> Evaluation<f64, COUNT> {
+        let (x, slope) = self.parameters(u);
+        let mut gradient = [0.0; COUNT];
+        let mut gauss_newton = [[0.0; COUNT]; COUNT];
+        for (i, row) in gauss_newton.iter_mut().enumerate() {
+            // a held parameter stays where it is
+            row[i] = if self.is_free(i) { 0.0 } else { 1.0 };
+        }
+        let mut cost = f64::MAX;
+        // outside the model's domain: a cost that no step is taken for
+        if let Ok(normal) = self.normal(&x, false) {
+            cost = normal.chi2;
+            for i in (0..COUNT).filter(|i| self.is_free(*i)) {
+                gradient[i] = -2.0 * normal.score[i] * slope[i];
+                for j in (0..COUNT).filter(|j| self.is_free(*j)) {
+                    gauss_newton[i][j] = 2.0 * normal.matrix[i][j] * slope[i] * slope[j];
+                }
+                if let Some(prior) = self.priors[i] {
+                    let (misfit, by_x) = prior.misfit(x[i]);
+                    cost += self.prior_weight * misfit * misfit;
+                    gradient[i] += 2.0 * self.prior_weight * misfit * by_x * slope[i];
+                    gauss_newton[i][i] += 2.0 * self.prior_weight * (by_x * slope[i]).powi(2);
+                }
+            }
+            if !cost.is_finite() {
+                cost = f64::MAX;
+            }
+        }
+        Evaluation { cost, gradient, hessian: gauss_newton, gauss_newton }
+    }
+}
+
+/// Shape and lobe of every direction, once for the leaf, or band by band where the index follows the table.
+enum Lobes {
+    /// A single diffuse reflectance: π s = 1, no lobe.
+    None(DirectionValue<f64>),
+    Shared(Vec<DirectionValue<f64>>),
+    Banded {
+        values: Vec<DirectionValue<f64>>,
+        directions: usize,
+        index: Vec<f64>,
+    },
+}
+
+impl Lobes {
+    fn new(model: &Model<'_>, x: &[f64; COUNT]) -> Result<Self, leafbrdf_prospect::Error> {
+        let outside = |_: DomainError| leafbrdf_prospect::Error::SurfaceIndex { value: x[N] };
+        let Some(surface) = &model.surface else {
+            let diffuse = core::f64::consts::FRAC_1_PI;
+            return Ok(Lobes::None(DirectionValue { diffuse, ..DirectionValue::dark() }));
+        };
+        let mut at: [f64; PARAMETERS] = core::array::from_fn(|i| x[i]);
+        let directions = surface.directions.len();
+        if !model.scaled_index {
+            let mut values = Vec::with_capacity(directions);
+            surface.derivatives(&at, |value| values.push(value)).map_err(outside)?;
+            return Ok(Lobes::Shared(values));
+        }
+        let view = model.prospect.view();
+        let index: Vec<f64> = (0..view.len()).map(|band| view.refractive_index(band).unwrap_or(1.0)).collect();
+        let mut values = Vec::with_capacity(directions * index.len());
+        for material in &index {
+            at[N] = x[N] * material;
+            surface.derivatives(&at, |value| values.push(value)).map_err(outside)?;
+        }
+        Ok(Lobes::Banded { values, directions, index })
+    }
+
+    #[inline(always)]
+    fn at(&self, direction: usize, band: usize) -> &DirectionValue<f64> {
+        match self {
+            Lobes::None(value) => value,
+            Lobes::Shared(values) => &values[direction],
+            Lobes::Banded { values, directions, .. } => &values[band * directions + direction],
+        }
+    }
+
+    /// d(index)/d(coefficient) for n; 1 for everything else.
+    #[inline(always)]
+    fn index_scale(&self, parameter: usize, band: usize) -> f64 {
+        match self {
+            Lobes::Banded { index, .. } if parameter == N => index[band],
+            _ => 1.0,
+        }
+    }
+}
+
+/// DHRF_spec at normal incidence, with derivatives.
+pub(super) fn dhrf_at_zenith(
+    model: &LeafModel<'_, f64>,
+    n: f64,
+    sigma: f64,
+    grade: Grade,
+) -> Result<DhrfGradient<f64>, leafbrdf_prospect::Error> {
+    let outside = |_: DomainError| leafbrdf_prospect::Error::SurfaceIndex { value: n };
+    let zenith = Illumination::new(Angle::from_radians(0.0)).map_err(outside)?;
+    dhrf(model.facets, model.normalization, n, sigma, &zenith, grade).map_err(outside)
+}
+
+/// DHRF_spec of either kind of facets.
+pub fn dhrf(
+    facets: FacetKind,
+    normalization: Normalization,
+    n: f64,
+    sigma: f64,
+    source: &Illumination<f64>,
+    grade: Grade,
+) -> Result<DhrfGradient<f64>, DomainError> {
+    Ok(match facets {
+        FacetKind::Beckmann => {
+            Surface::new(n, sigma)?.with_normalization(normalization).dhrf_with_gradient(source, grade)
+        }
+        FacetKind::Ggx => Surface::ggx(n, sigma)?.with_normalization(normalization).dhrf_with_gradient(source, grade),
+    })
+}
+
+/// PROSPECT's parameters among the leaf's.
+pub(super) fn leaf_of(x: &[f64; COUNT]) -> LeafParams<f64> {
+    let mut leaf = LeafParams::with_n_struct(x[INTERIOR]);
+    for (value, i) in x.iter().zip(0..) {
+        if let Some(parameter) = interior(i) {
+            leaf.set(parameter, *value);
+        }
+    }
+    leaf
+}
+
+/// dy/dλ per nm by the neighbours.
+fn slope_along(nm: &[f64], y: &[f64], band: usize) -> f64 {
+    let (before, after) = (band.saturating_sub(1), (band + 1).min(nm.len().saturating_sub(1)));
+    let width = nm[after] - nm[before];
+    if width > 0.0 { (y[after] - y[before]) / width } else { 0.0 }
+}
+
+/// Σ a b, in eight sums that the compiler puts side by side.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = a8.remainder().iter().zip(b8.remainder()).map(|(a, b)| a * b).sum();
+    for (a, b) in a8.zip(b8) {
+        for i in 0..8 {
+            sums[i] += a[i] * b[i];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}

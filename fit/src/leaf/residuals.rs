@@ -1,0 +1,155 @@
+//! How the model errors of neighbouring wavelengths resemble each other, and residuals made independent.
+//!
+//! C_ij = s² exp(−|λ_i − λ_j|/ℓ) + w² δ_ij: a slow part that forgets exponentially, and white noise. Its Cholesky factor is never
+//! built. The slow part is a Markov chain, so the innovations of a scalar Kalman filter, each over its standard deviation, are
+//! exactly L⁻¹r: a few operations a band instead of a row of a matrix.
+
+use std::vec::Vec;
+
+/// The residuals' covariance over the wavelengths of one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ResidualModel {
+    /// s: standard deviation of the slow part, in reflectance; 0 without one.
+    pub slow_sd: f64,
+    /// ℓ: the wavelength distance after which 1/e of it is left, nm.
+    pub length_nm: f64,
+    /// w: standard deviation of the white part, in reflectance.
+    pub white_sd: f64,
+}
+
+impl ResidualModel {
+    /// Independent residuals, all with this standard deviation.
+    pub const fn white(sd: f64) -> Self {
+        ResidualModel { slow_sd: 0.0, length_nm: 1.0, white_sd: sd }
+    }
+
+    /// The variance of a single residual.
+    pub fn variance(&self) -> f64 {
+        self.slow_sd * self.slow_sd + self.white_sd * self.white_sd
+    }
+}
+
+/// A filter for one set of wavelengths, some of which are left out.
+#[derive(Clone, Debug)]
+pub(super) struct Whitening {
+    /// Band by band: how much of the slow part is left since the band before, the filter's gain, and 1/√(innovation variance)
+    /// (0 where the band is left out).
+    steps: Vec<[f64; 3]>,
+}
+
+impl Whitening {
+    /// `scale` multiplies the white standard deviation of each band; a band with 0 or less, or NaN, is left out.
+    pub fn new(model: &ResidualModel, wavelengths_nm: &[f64], scale: impl Fn(usize) -> f64) -> Self {
+        let slow = model.slow_sd * model.slow_sd;
+        // variance of the slow part, given all bands so far
+        let mut variance = slow;
+        let mut before: Option<f64> = None;
+        let steps = wavelengths_nm
+            .iter()
+            .enumerate()
+            .map(|(band, nm)| {
+                let left = before.map_or(1.0, |before| (-(nm - before).abs() / model.length_nm).exp());
+                before = Some(*nm);
+                variance = left * left * variance + slow * (1.0 - left * left);
+                let white = model.white_sd * scale(band);
+                if !(white > 0.0) {
+                    return [left, 0.0, 0.0];
+                }
+                let innovation = variance + white * white;
+                let gain = variance / innovation;
+                variance -= gain * variance;
+                [left, gain, 1.0 / innovation.sqrt()]
+            })
+            .collect();
+        Whitening { steps }
+    }
+
+    /// r ← L⁻¹r; 0 where the band is left out.
+    pub fn apply(&self, r: &mut [f64]) {
+        let mut slow = 0.0;
+        for (r, [left, gain, inverse]) in r.iter_mut().zip(&self.steps) {
+            slow *= left;
+            if *inverse > 0.0 {
+                let innovation = *r - slow;
+                slow += gain * innovation;
+                *r = innovation * inverse;
+            } else {
+                *r = 0.0;
+            }
+        }
+    }
+
+    /// How many bands count.
+    pub fn used(&self) -> usize {
+        self.steps.iter().filter(|[_, _, inverse]| *inverse > 0.0).count()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec;
+
+    use super::*;
+
+    /// rᵀC⁻¹r by elimination, the textbook way.
+    fn quadratic_form(model: &ResidualModel, nm: &[f64], r: &[f64]) -> f64 {
+        let n = nm.len();
+        let mut c: Vec<Vec<f64>> = (0..n)
+            .map(|i| {
+                let of = |j: usize| {
+                    let slow = model.slow_sd.powi(2) * (-(nm[i] - nm[j]).abs() / model.length_nm).exp();
+                    slow + if i == j { model.white_sd.powi(2) } else { 0.0 }
+                };
+                (0..n).map(of).collect()
+            })
+            .collect();
+        let mut x = r.to_vec();
+        for k in 0..n {
+            for i in k + 1..n {
+                let factor = c[i][k] / c[k][k];
+                for j in k..n {
+                    c[i][j] -= factor * c[k][j];
+                }
+                x[i] -= factor * x[k];
+            }
+        }
+        (0..n).map(|k| x[k] * x[k] / c[k][k]).sum()
+    }
+
+    #[test]
+    fn whitened_residuals_have_the_quadratic_form_of_their_covariance() {
+        let nm = [410.0, 420.0, 430.0, 437.5, 500.0, 900.0, 901.0, 1500.0];
+        let r = [0.01, -0.004, 0.02, 0.013, -0.03, 0.002, 0.001, -0.01];
+        for model in [
+            ResidualModel { slow_sd: 0.01, length_nm: 60.0, white_sd: 0.002 },
+            ResidualModel { slow_sd: 0.01, length_nm: 1e4, white_sd: 0.02 },
+            ResidualModel::white(0.01),
+        ] {
+            let mut white = r;
+            Whitening::new(&model, &nm, |_| 1.0).apply(&mut white);
+            let ours: f64 = white.iter().map(|r| r * r).sum();
+            // both sides: rounding times a condition number below 10³
+            assert!((ours / quadratic_form(&model, &nm, &r) - 1.0).abs() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn a_band_that_is_left_out_is_as_if_it_had_never_been() {
+        let model = ResidualModel { slow_sd: 0.01, length_nm: 60.0, white_sd: 0.004 };
+        let (nm, r) = ([410.0, 420.0, 430.0, 450.0], [0.01, 99.0, 0.02, -0.01]);
+        let mut white = r;
+        let gap = Whitening::new(&model, &nm, |band| if band == 1 { f64::NAN } else { 1.0 });
+        gap.apply(&mut white);
+        let with_gap: f64 = white.iter().map(|r| r * r).sum();
+        assert_eq!((gap.used(), white[1]), (3, 0.0));
+        assert!((with_gap / quadratic_form(&model, &[410.0, 430.0, 450.0], &[0.01, 0.02, -0.01]) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn white_residuals_are_divided_by_their_standard_deviation() {
+        let mut r = vec![0.02, 0.04];
+        Whitening::new(&ResidualModel::white(0.01), &[500.0, 501.0], |band| if band == 0 { 1.0 } else { 2.0 })
+            .apply(&mut r);
+        assert!((r[0] - 2.0).abs() < 1e-15 && (r[1] - 2.0).abs() < 1e-15);
+    }
+}
