@@ -16,7 +16,7 @@ use core::mem::MaybeUninit;
 use example::board;
 use example::measurement::{BANDS, BRDF, DIRECTIONS, DIRECTIONS_DEG, WAVELENGTHS_NM};
 use example::text::{print, print_decimal, print_whole};
-use leafbrdf_c::{LB_BOUSQUET_2005, LB_OK, lb_cab, lb_fit_cab, lb_interior, lb_leaf};
+use leafbrdf_c::{LB_BOUSQUET_2005, LB_OK, lb_brdf, lb_cab, lb_cosines, lb_fit_cab, lb_interior, lb_leaf};
 use leafbrdf_core::real::device::F32;
 use leafbrdf_core::{Angle, DirectionTerms, DomainError, Grade, Illumination, Normalization, Real, Surface};
 use leafbrdf_fit::device::{Workspace, fit_band};
@@ -146,7 +146,7 @@ fn costs(head: &Head, surface: &Surface<F32>, k_lambert: &[f32; BANDS], source: 
         }
     };
     let mut workspace = Workspace::new();
-    cost("BRDF at a prepared direction", TIMES, &mut || {
+    cost("evaluation, prepared direction", TIMES, &mut || {
         let terms = DirectionTerms {
             cos_theta_a: black_box(F32(0.8)),
             tan2_alpha: black_box(F32(0.02)),
@@ -154,16 +154,22 @@ fn costs(head: &Head, surface: &Surface<F32>, k_lambert: &[f32; BANDS], source: 
         };
         black_box(terms.brdf(surface.index(), surface.sigma()));
     });
-    cost("BRDF from degrees", TIMES, &mut || {
+    let beech = lb_leaf { k_lambert: 0.2, n: 1.56, sigma: 0.29, normalization: LB_BOUSQUET_2005 };
+    let at = lb_cosines { cos_theta_s: 0.8, sin_theta_s: 0.6, cos_theta_v: 0.6, sin_theta_v: 0.8, cos_phi_v: -0.75 };
+    let mut brdf = MaybeUninit::uninit();
+    cost("evaluation, cosines through C", TIMES, &mut || {
+        black_box(lb_brdf(black_box(Some(&beech)), black_box(Some(&at)), Some(&mut brdf)));
+    });
+    cost("evaluation, degrees", TIMES, &mut || {
         let _ = black_box(surface.brdf_at_degrees(black_box(F32(45.0)), black_box(F32(30.0)), black_box(F32(150.0))));
     });
-    cost("DHRF_spec", 1, &mut || {
+    cost("dhrf, specular", 1, &mut || {
         black_box(surface.dhrf(source, Grade::E4d));
     });
-    cost("k_L, n, sigma of one band", 1, &mut || {
+    cost("band, k_L n sigma", 1, &mut || {
         black_box(invert(head, black_box(2), &mut workspace));
     });
-    cost("N, C_ab", 1, &mut || {
+    cost("cab, N and C_ab", 1, &mut || {
         black_box(chlorophyll(surface, k_lambert));
     });
 }

@@ -23,6 +23,11 @@
 #define LB_WORKSPACE_FLOATS 140
 
 /**
+ * The most steps of the search for one band, over its starts; a step is at most one pass over the directions.
+ */
+#define LB_BAND_MOST_STEPS 400
+
+/**
  * Bit of lb_band.at_bound: k_lambert is at its lower bound and held there.
  */
 #define LB_AT_LOWER_K_LAMBERT 1
@@ -51,6 +56,11 @@
  * Bit of lb_band.at_bound: sigma is at its upper bound.
  */
 #define LB_AT_UPPER_SIGMA 32
+
+/**
+ * The most steps of lb_fit_cab, over both its starts; a step is at most two passes over the wavelengths.
+ */
+#define LB_CAB_MOST_STEPS 80
 
 /**
  * First wavelength of the slice of PROSPECT-D that is built in, nm.
@@ -497,7 +507,7 @@ lb_status lb_fit_bands(const struct lb_directions *directions,
  * - held: the other contents; its n_struct and cab are not looked at, but must lie in their ranges.
  * - car_per_cab: C_car = car_per_cab x C_ab, 0 to 10, added to held's car; 0.25 is usual in green leaves, 0 ties nothing.
  *
- * Bounded: at most 80 steps in all, each with at most two passes over the wavelengths.
+ * Bounded: at most LB_CAB_MOST_STEPS steps.
  *
  * # Safety
  * `wavelengths_nm` and `k_lambert` point to `bands` values, or are null.

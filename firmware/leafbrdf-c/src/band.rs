@@ -13,6 +13,9 @@ use crate::surface::give;
 /// Floats in an lb_workspace.
 pub const LB_WORKSPACE_FLOATS: usize = 140;
 
+/// The most steps of the search for one band, over its starts; a step is at most one pass over the directions.
+pub const LB_BAND_MOST_STEPS: u32 = 400;
+
 /// Bit of lb_band.at_bound: k_lambert is at its lower bound and held there.
 pub const LB_AT_LOWER_K_LAMBERT: u32 = 1;
 /// Bit of lb_band.at_bound: k_lambert is at its upper bound.

@@ -44,8 +44,8 @@ pub struct lb_cab {
 /// C_0, ug cm^-2.
 const ORIGIN: f64 = 20.0;
 
-/// Steps from one start at most.
-const MOST_ITERATIONS: u32 = 40;
+/// The most steps of lb_fit_cab, over both its starts; a step is at most two passes over the wavelengths.
+pub const LB_CAB_MOST_STEPS: u32 = 80;
 
 /// Where the search starts, N and C_ab: green and pale.
 const STARTS: [[f32; 2]; 2] = [[1.5, 40.0], [1.5, 8.0]];
@@ -61,7 +61,7 @@ const STARTS: [[f32; 2]; 2] = [[1.5, 40.0], [1.5, 8.0]];
 /// - held: the other contents; its n_struct and cab are not looked at, but must lie in their ranges.
 /// - car_per_cab: C_car = car_per_cab x C_ab, 0 to 10, added to held's car; 0.25 is usual in green leaves, 0 ties nothing.
 ///
-/// Bounded: at most 80 steps in all, each with at most two passes over the wavelengths.
+/// Bounded: at most LB_CAB_MOST_STEPS steps.
 ///
 /// # Safety
 /// `wavelengths_nm` and `k_lambert` point to `bands` values, or are null.
@@ -122,7 +122,7 @@ impl Misfit<'_> {
         let bounds = [Interval::new(lower[0], upper[0]), Interval::new(lower[1], upper[1])];
         let options = SolverOptions {
             tolerance: Number::lit(1e-4),
-            max_iterations: MOST_ITERATIONS,
+            max_iterations: LB_CAB_MOST_STEPS / STARTS.len() as u32,
             // half-way from a pale leaf to a dark one
             max_step: [Number::HALF, Number::ONE],
         };

@@ -33,9 +33,10 @@ mod surface;
 
 pub use band::{
     LB_AT_LOWER_K_LAMBERT, LB_AT_LOWER_N, LB_AT_LOWER_SIGMA, LB_AT_UPPER_K_LAMBERT, LB_AT_UPPER_N, LB_AT_UPPER_SIGMA,
-    LB_WORKSPACE_FLOATS, lb_band, lb_bounds, lb_directions, lb_fit_band, lb_fit_bands, lb_workspace,
+    LB_BAND_MOST_STEPS, LB_WORKSPACE_FLOATS, lb_band, lb_bounds, lb_directions, lb_fit_band, lb_fit_bands,
+    lb_workspace,
 };
-pub use chlorophyll::{lb_cab, lb_fit_cab};
+pub use chlorophyll::{LB_CAB_MOST_STEPS, lb_cab, lb_fit_cab};
 pub use direction::{lb_brdf_at, lb_direction, lb_direction_from_cosines, lb_direction_from_degrees};
 pub use hemisphere::lb_dhrf;
 pub use interior::{LB_SLICE_BANDS, LB_SLICE_FIRST_NM, LB_SLICE_STEP_NM, lb_interior, lb_prospect_slice};

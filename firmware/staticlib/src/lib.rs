@@ -11,3 +11,10 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
         core::hint::spin_loop();
     }
 }
+
+/// A bounds check that can fail: `firmware/object` must refuse it.
+#[cfg(feature = "planted-panic")]
+#[unsafe(no_mangle)]
+pub extern "C" fn lb_planted(place: usize) -> f32 {
+    [1.0, 2.0, 3.0][place]
+}
