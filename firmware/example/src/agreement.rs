@@ -99,7 +99,7 @@ impl Draw {
             k_lambert: random.below(1030, 1.0 / 1024.0),
             n: 1.0 + random.below(2048, 1.0 / 1024.0),
             sigma: random.below(1024, 1.0 / 1024.0),
-            normalization: if random.next() % 2 == 0 {
+            normalization: if random.next().is_multiple_of(2) {
                 Normalization::Bousquet2005
             } else {
                 Normalization::CookTorrance
@@ -264,11 +264,12 @@ fn interior(random: &mut Random, block: u32, print: &mut Print<'_>) {
         let optics = plates(faces, (k + F32(cab) * k_ab) / F32(n_struct), F32(n_struct));
         hash.float(optics.reflectance);
         hash.float(optics.transmittance);
-        if band >= 20 && (band - 20) % 12 == 0 {
-            if let Some((k_lambert, nm)) = places.next() {
-                *k_lambert = optics.reflectance.0;
-                *nm = (u32::from(LB_SLICE_FIRST_NM) + u32::from(LB_SLICE_STEP_NM) * band as u32) as f32;
-            }
+        if band % 12 == 8
+            && band >= 20
+            && let Some((k_lambert, nm)) = places.next()
+        {
+            *k_lambert = optics.reflectance.0;
+            *nm = (u32::from(LB_SLICE_FIRST_NM) + u32::from(LB_SLICE_STEP_NM) * band as u32) as f32;
         }
     }
     print("prospect", block, hash.0);

@@ -2,7 +2,7 @@
 //!
 //! | call | device | host |
 //! |---|---|---|
-//! | [`write`] | semihosting console | standard output |
+//! | [`write()`] | semihosting console | standard output |
 //! | [`exit`] | semihosting exit | process exit |
 //! | [`instructions`] | SysTick or minstret under `-icount shift=0` | 0 |
 //! | [`stack`] | painted memory below the stack pointer | 0 |

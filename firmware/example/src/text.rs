@@ -32,7 +32,7 @@ pub fn print_decimal(value: f32) {
         write(b'-');
     }
     let magnitude = if value < 0.0 { -value } else { value };
-    if !(magnitude < 1e9) {
+    if magnitude >= 1e9 {
         return print("inf");
     }
     // to the nearest ten-thousandth, in integers
