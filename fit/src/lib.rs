@@ -8,6 +8,7 @@ extern crate std;
 
 pub mod band;
 mod bounds;
+pub mod device;
 mod error;
 pub mod hemispherical;
 #[cfg(feature = "std")]

@@ -294,6 +294,11 @@ fn settle<T: Real, const P: usize, O: Objective<T, P>>(
     if at_bound.iter().all(|at| *at == AtBound::Free) {
         return (x, here, at_bound);
     }
+    if settled == x {
+        // on the bound already: a second look would differ by rounding only
+        return (x, here, at_bound);
+    }
     let there = objective.evaluate(&settled);
-    if there.cost <= here.cost { (settled, there, at_bound) } else { (x, here, [AtBound::Free; P]) }
+    // within a hair of the bound the costs differ by rounding
+    if there.cost <= here.cost + T::lit(64.0) * T::EPSILON * here.cost { (settled, there, at_bound) } else { (x, here, [AtBound::Free; P]) }
 }

@@ -8,7 +8,8 @@ use super::scan::{GridMinimum, Scan};
 use super::{Band, Directions};
 use crate::FitError;
 use crate::bounds::{AtBound, BandBounds, Interval};
-use crate::solver::{SolverOptions, minimize};
+use crate::linear::solve_spd;
+use crate::solver::{Minimum, SolverOptions, Termination, minimize};
 
 pub use super::report::Weights;
 
@@ -154,13 +155,14 @@ impl<'a, T: Real, const L: usize> BandSolver<'a, T, L> {
         let x = [f0_from_n(bounds.n.clip(start.n)).ln(), bounds.sigma.clip(start.sigma).ln()];
         let minimum = minimize(&mut profile, &boxed, &x, &options);
 
+        let last = last_step(&minimum, &boxed, self.options.tolerance);
         let value = |at: AtBound, interval: Interval<T>, x: T| match at {
             AtBound::Lower => interval.lower,
             AtBound::Upper => interval.upper,
             AtBound::Free => interval.clip(x),
         };
-        let n = value(minimum.at_bound[0], bounds.n, n_from_f0(minimum.x[0].exp())[0]);
-        let sigma = value(minimum.at_bound[1], bounds.sigma, minimum.x[1].exp());
+        let n = value(minimum.at_bound[0], bounds.n, n_from_f0(last[0].exp())[0]);
+        let sigma = value(minimum.at_bound[1], bounds.sigma, last[1].exp());
         // once more with k_L/π as reference: χ² to the last digit, and the normal matrix
         let mut point = profile.at(n, sigma);
         let k_at = if point.k_free {
@@ -180,6 +182,23 @@ impl<'a, T: Real, const L: usize> BandSolver<'a, T, L> {
             termination: minimum.termination,
         }
     }
+}
+
+/// Where the step that the search saw no need to take would have led: in single precision, where searches stop early, it brings
+/// the parameters from a tenth of their errors to a hundredth at no cost, for the last point is looked at once more anyway.
+///
+/// Inside the box and of a parameter that is free only; in double precision the step is below what anyone reads.
+#[inline(always)]
+fn last_step<T: Real>(minimum: &Minimum<T, 2>, boxed: &[Interval<T>; 2], tolerance: T) -> [T; 2] {
+    let x = minimum.x;
+    let free = minimum.at_bound.iter().all(|at| *at == AtBound::Free);
+    if !(free && minimum.termination == Termination::Converged && tolerance > T::lit(1e-8)) {
+        return x;
+    }
+    let Some(step) = solve_spd(&minimum.evaluation.hessian, &minimum.evaluation.gradient) else { return x };
+    let moved = [x[0] - step[0], x[1] - step[1]];
+    let inside = moved.iter().zip(boxed).all(|(x, bound)| *x > bound.lower && *x < bound.upper);
+    if inside { moved } else { x }
 }
 
 /// Σ ω and the number of values with ω > 0.
