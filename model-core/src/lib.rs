@@ -18,7 +18,7 @@ pub mod real;
 mod specular;
 
 pub use angle::Angle;
-pub use dhrf::{DhrfGradient, Grade, Illumination};
+pub use dhrf::{DhrfGradient, Grade, Hemispherical, Illumination};
 pub use diffuse::{Diffuse, DiffuseSlopes, Lambert, P1, P2};
 pub use error::DomainError;
 pub use facet::{Beckmann, FacetSlopes, Facets, Ggx};

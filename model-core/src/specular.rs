@@ -3,7 +3,7 @@
 use crate::facet::{Beckmann, Facets, beckmann, beckmann_log_slopes};
 use crate::fresnel::{Absorbing, Dielectric, Index};
 use crate::masking::{Masking, VCavity, v_cavity};
-use crate::{DhrfGradient, DomainError, Geometry, Grade, Illumination, Real};
+use crate::{DhrfGradient, DomainError, Geometry, Grade, Hemispherical, Illumination, Real};
 
 mod ggx;
 mod tilted;
@@ -227,7 +227,10 @@ impl<T: Real, I: Index<T>, D: Facets<T>, G: Masking<T>> Surface<T, I, D, G> {
     }
 }
 
-impl<T: Real, I: Index<T>> Surface<T, I> {
+impl<T: Real, I: Index<T>, D: Facets<T>, G: Masking<T>> Surface<T, I, D, G>
+where
+    (D, G): Hemispherical<T>,
+{
     /// DHRF_spec (Eq. 14), unitless: the share of the light from `source` that the surface reflects and that never enters
     /// the leaf. Under the surface's own convention for K.
     ///
@@ -241,13 +244,13 @@ impl<T: Real, I: Index<T>> Surface<T, I> {
     /// ```
     #[inline]
     pub fn dhrf(&self, source: &Illumination<T>, grade: Grade) -> T {
-        self.normalization.factor::<T>() * source.dhrf(self.index, self.sigma, grade)
+        self.normalization.factor::<T>() * <(D, G)>::dhrf(source, self.index, self.sigma, grade)
     }
 
     /// DHRF_spec with its exact derivatives with respect to n and σ, from the same nodes.
     #[inline]
     pub fn dhrf_with_gradient(&self, source: &Illumination<T>, grade: Grade) -> DhrfGradient<T> {
-        let DhrfGradient { value, d_n, d_sigma } = source.dhrf_with_gradient(self.index, self.sigma, grade);
+        let DhrfGradient { value, d_n, d_sigma } = <(D, G)>::dhrf_with_gradient(source, self.index, self.sigma, grade);
         let factor = self.normalization.factor::<T>();
         DhrfGradient { value: factor * value, d_n: factor * d_n, d_sigma: factor * d_sigma }
     }
