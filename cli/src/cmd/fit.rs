@@ -14,6 +14,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use leafbrdf::fit::{LeafRow, Selected, Selection, Summary, WavelengthRange, fit_bands, write_bands, write_leaves};
 use leafbrdf::measurement::{Azimuth, Measurement, Quantity, ReadOptions, read_path};
 use leafbrdf::output::file_name;
+use leafbrdf::plot::PlotOptions;
 use leafbrdf_core::Normalization;
 use leafbrdf_fit::{BandBounds, BandOptions, Interval, LeafBandsOptions, Start, band::Weights};
 use rayon::prelude::*;
@@ -97,6 +98,9 @@ pub struct Arguments {
     /// Azimuth convention of the files that do not say
     #[arg(long, value_enum)]
     azimuth: Option<Azimuth>,
+    /// Draw the figures too, as `leafbrdf plot` does, into the folder figures beside each leaf's files
+    #[arg(long)]
+    plots: bool,
     /// Threads; as many as the machine has cores without it. The results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -185,11 +189,18 @@ impl Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    match arguments.model {
+    let fitted = match arguments.model {
         Model::Bands => bands(arguments),
         Model::Surface => surface::run(arguments),
         Model::Prospect => prospect::run(arguments),
+    };
+    // where some leaves have failed the others still have figures
+    if arguments.plots && !matches!(fitted, Err(Failure::Usage(_))) {
+        let read = ReadOptions { quantity: arguments.quantity, azimuth: arguments.azimuth };
+        let drawn = super::plot::draw(&arguments.output, &PlotOptions { read, ..PlotOptions::default() });
+        return fitted.and(drawn.map(|_| ()));
     }
+    fitted
 }
 
 /// The folder for the results, and the threads that work on them.

@@ -1,7 +1,7 @@
 //! `leafbrdf plot`: the figures of a fit.
 
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use leafbrdf::measurement::{Azimuth, Quantity, ReadOptions};
@@ -58,15 +58,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         measurement: arguments.measurement.clone(),
         read: ReadOptions { quantity: arguments.quantity, azimuth: arguments.azimuth },
     };
-    let plotted = plot(&arguments.folder, &options).map_err(|error| Failure::Failed(error.to_string()))?;
     let mut out = io::stdout().lock();
-    for file in &plotted.files {
+    for file in draw(&arguments.folder, &options)? {
         writeln!(out, "{}", file.display()).map_err(|error| Failure::writing(None, &error))?;
     }
+    Ok(())
+}
+
+/// Draws the figures of a folder; what is left out is told on standard error.
+pub fn draw(folder: &Path, options: &PlotOptions) -> Result<Vec<PathBuf>, Failure> {
+    let plotted = plot(folder, options).map_err(|error| Failure::Failed(error.to_string()))?;
     let mut errors = io::stderr().lock();
     for sentence in &plotted.left_out {
         // A courtesy: where standard error is closed, the figures are there all the same.
         let _ = writeln!(errors, "warning: {sentence}");
     }
-    Ok(())
+    Ok(plotted.files)
 }

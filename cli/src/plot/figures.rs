@@ -77,7 +77,7 @@ fn column<'a>(
     Ok(Column {
         heading,
         theta_s_deg,
-        dots: dots(measurement, nm, theta_s_deg, results.max_theta_v_deg()),
+        dots: dots(measurement, nm, theta_s_deg, results.max_theta_v_deg(measurement)),
         model: Some(Box::new(move |theta_v, phi_v| model.brdf(theta_s_deg, theta_v, phi_v))),
     })
 }
@@ -177,7 +177,7 @@ fn maps(made: &mut Made, results: &Results, measurement: &Measurement, options: 
 /// Measured against modelled values of every band that was fitted.
 fn density(made: &mut Made, results: &Results, measurement: &Measurement) -> Result<(), PlotError> {
     let Some(bands) = &results.bands else { return Ok(()) };
-    let limit = results.max_theta_v_deg();
+    let limit = results.max_theta_v_deg(measurement);
     let brdf = measurement.brdf();
     let width = measurement.directions.len();
     let mut pairs = Vec::new();
@@ -206,7 +206,7 @@ fn cuts(made: &mut Made, results: &Results, measurement: &Measurement) -> Result
     let leaf = results.leaf.as_str();
     let shown = literal(leaf);
     let model = results.model_at(band)?;
-    let limit = results.max_theta_v_deg();
+    let limit = results.max_theta_v_deg(measurement);
 
     let cut = |theta_s_deg: f64| Cut {
         theta_s_deg,

@@ -167,10 +167,15 @@ impl Results {
         self.summary.get("correlations")?.get(format!("{one},{other}"))?.as_f64()
     }
 
-    /// θ_v above which directions took no part in the fit, degrees.
-    pub fn max_theta_v_deg(&self) -> f64 {
-        let limit = self.summary.get("directions").and_then(|directions| directions.get("max_theta_v_deg"));
-        limit.and_then(Value::as_f64).unwrap_or(70.0)
+    /// The greatest θ_v that took part in the fit, degrees: as many directions lie above it as were left out.
+    pub fn max_theta_v_deg(&self, measurement: &Measurement) -> f64 {
+        let directions = self.summary.get("directions");
+        let left_out = directions.and_then(|directions| directions.get("left_out_beyond_max_theta_v"));
+        let Some(left_out) = left_out.and_then(Value::as_u64) else { return 70.0 };
+        let mut angles: Vec<f64> = measurement.directions.iter().map(|d| d.theta_v_deg).collect();
+        angles.sort_by(f64::total_cmp);
+        let last = angles.len().saturating_sub(1 + left_out as usize);
+        angles.get(last).copied().unwrap_or(70.0)
     }
 
     /// The measurement that was fitted: `asked` for, or where `summary.json` says (as it stands there, else beside it).

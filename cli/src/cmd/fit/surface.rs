@@ -36,6 +36,7 @@ pub enum Diffuse {
 
 /// The surface's options that the models of a whole leaf share.
 #[derive(Args, Debug)]
+#[group(id = "surface_options")]
 #[command(next_help_heading = "Options of --model surface (and of models that contain it)")]
 pub struct Options {
     /// Distribution of facets [default: beckmann]
