@@ -6,10 +6,12 @@
 //! | `bands` | k_L, n, σ at each wavelength: the inversion, `bands.csv`, `dhrf.csv` |
 //! | `surface` | one n, σ for the leaf and k_L at each wavelength |
 //! | `prospect` | structure and contents from hemispherical spectra |
+//! | `leaf` | surface and interior of the whole leaf |
 //! | `summary` | `summary.json`: the leaf as a whole, and what the user should be warned of |
 //! | `leaves` | `leaves.csv`: one row a leaf |
 
 mod bands;
+mod leaf;
 mod leaves;
 mod prospect;
 mod select;
@@ -17,6 +19,7 @@ mod summary;
 mod surface;
 
 pub use bands::{BandsOutcome, fit_bands, write_bands};
+pub use leaf::{LeafOutcome, fit_leaf};
 pub use leaves::{LeafRecord, LeafRow, LeafValues, write_leaves, write_records};
 pub use prospect::{ProspectOptions, ProspectOutcome, fit_prospect};
 pub use select::{Selected, Selection, WavelengthRange};

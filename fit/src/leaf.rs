@@ -29,7 +29,7 @@ mod residuals;
 
 pub use engine::dhrf;
 pub use parameters::{Prior, Treatment};
-pub use problem::{DirectionalData, LeafError, LeafOptions, Method, SurfaceFrom, fit};
+pub use problem::{DirectionalData, LeafError, LeafOptions, Method, SurfaceFrom, default_bounds, fit};
 pub use recipe::{HeldSd, Interior, RECIPES, RECOMMENDED, Recipe};
 pub use report::{Knowledge, LeafFit, OtherLeaf, RecipeReport};
 pub use residuals::ResidualModel;

@@ -1,5 +1,6 @@
 //! `leafbrdf fit`: the main job, inversion of measured leaf BRDF; and of hemispherical spectra.
 
+mod leaf;
 mod prospect;
 mod surface;
 
@@ -28,6 +29,8 @@ enum Model {
     Bands,
     /// One n and σ for the leaf, k_L at each wavelength; with options a tilt of the leaf, other facets, another diffuse term
     Surface,
+    /// n and σ of the surface and PROSPECT's parameters of the interior, from directional reflectance (§4.6)
+    Leaf,
     /// PROSPECT's parameters, from hemispherical reflectance, transmittance or both
     Prospect,
 }
@@ -45,6 +48,8 @@ enum Model {
   leafbrdf fit leaves/*.csv --model bands --wavelengths 480:879 --normalization cook-torrance -o out
   leafbrdf fit laurel.csv --model surface -o laurel-surface
   leafbrdf fit leaves/*.csv --model surface --tilt --facets ggx --diffuse p1 -o out
+  leafbrdf fit leaves/*.csv --model leaf -o out
+  leafbrdf fit leaf.csv --model leaf --method joint --coupling bousquet --fix cant=0 --car-per-cab 0.25 -o out
   leafbrdf fit sphere.csv --model prospect --prospect D --fix cbrown=0 -o sphere-fit")]
 pub struct Arguments {
     /// Measurement files, wide or long (for prospect: spectra), plain or gzip; - is standard input
@@ -106,6 +111,8 @@ pub struct Arguments {
     threads: Option<u16>,
     #[command(flatten)]
     surface: surface::Options,
+    #[command(flatten)]
+    leaf: leaf::Options,
     #[command(flatten)]
     prospect: prospect::Options,
 }
@@ -192,6 +199,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let fitted = match arguments.model {
         Model::Bands => bands(arguments),
         Model::Surface => surface::run(arguments),
+        Model::Leaf => leaf::run(arguments),
         Model::Prospect => prospect::run(arguments),
     };
     // where some leaves have failed the others still have figures
@@ -217,6 +225,7 @@ fn bands(arguments: &Arguments) -> Result<(), Failure> {
     let options = arguments.options()?;
     arguments.prospect.refuse()?;
     arguments.surface.refuse("bands")?;
+    arguments.leaf.refuse("bands")?;
     let pool = prepare(arguments)?;
     let bar = progress_bar("bands");
     let leaves = read(arguments);

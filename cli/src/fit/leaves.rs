@@ -18,7 +18,7 @@ pub struct LeafRow {
 }
 
 /// The columns that the contract names, in its order; cells of parameters that a model does not have are empty.
-const COLUMNS: [&str; 42] = [
+const COLUMNS: [&str; 47] = [
     "leaf",
     "status",
     "model",
@@ -61,6 +61,11 @@ const COLUMNS: [&str; 42] = [
     "p1_b_se",
     "facets",
     "diffuse",
+    "method",
+    "gain",
+    "offset",
+    "gain_se",
+    "offset_se",
 ];
 
 /// What a row says of a leaf that was fitted; `None` where a model has no such parameter.
@@ -86,6 +91,12 @@ pub struct LeafValues {
     pub p1_se: [Option<f64>; 2],
     /// Distribution of facets, and shape of the diffuse term.
     pub kinds: Option<[&'static str; 2]>,
+    /// How a whole leaf was inverted.
+    pub method: Option<&'static str>,
+    /// Gain and flat offset of the diffuse term.
+    pub gain_and_offset: [Option<f64>; 2],
+    /// Their standard errors.
+    pub gain_and_offset_se: [Option<f64>; 2],
     /// √(Σ residual²/values): sr⁻¹ of BRDF, or for `prospect` a fraction (reflectance, transmittance).
     pub rmse: f64,
     /// 1 − Σ residual²/Σ (value − mean)².
@@ -155,12 +166,14 @@ pub fn write_records(
                 let errors = values.prospect_se.iter().chain(&values.surface_se);
                 row.extend(errors.chain(&values.p1).chain(&values.p1_se).map(number));
                 row.extend(values.kinds.map_or([Cell::Empty; 2], |kinds| kinds.map(Cell::Text)));
+                row.push(values.method.map_or(Cell::Empty, Cell::Text));
+                row.extend(values.gain_and_offset.iter().chain(&values.gain_and_offset_se).map(number));
             }
             Err(sentence) => {
                 row.push(normalization.map_or(Cell::Empty, Cell::Text));
                 row.extend([Cell::Empty; 17]);
                 row.extend([Cell::Text(file), Cell::Text(sentence)]);
-                row.extend([Cell::Empty; 19]);
+                row.extend([Cell::Empty; 24]);
             }
         }
         table.row(&row)?;

@@ -5,7 +5,7 @@ use std::str::FromStr;
 use leafbrdf_core::{Angle, DirectionVectors, Geometry};
 
 use super::FitFailure;
-use crate::measurement::Measurement;
+use crate::measurement::{Direction, Measurement};
 
 /// `FIRST:LAST[:STEP]` in nm, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,6 +79,8 @@ pub struct Selected {
     pub theta_s_deg: Vec<f64>,
     /// One geometry a direction.
     pub geometries: Vec<Geometry<f64>>,
+    /// The same directions in degrees.
+    pub directions: Vec<Direction>,
     /// The same directions as vectors, for leaves that may be tilted.
     pub vectors: Vec<DirectionVectors<f64>>,
     /// BRDF in sr⁻¹, band by band; NaN where missing.
@@ -168,6 +170,7 @@ impl Selected {
             wavelengths_nm: bands.iter().map(|&band| leaf.wavelengths_nm[band]).collect(),
             theta_s_deg: kept.iter().map(|&i| leaf.directions[i].theta_s_deg).collect(),
             geometries,
+            directions: kept.iter().map(|&i| leaf.directions[i]).collect(),
             vectors,
             used: brdf.len() - missing,
             missing,

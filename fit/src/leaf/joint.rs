@@ -13,6 +13,7 @@ use super::problem::{
 use super::recommended::{Found, search_surface};
 use super::report::{self, Knowledge, LeafFit, Variance, absent};
 use super::residuals::ResidualModel;
+use crate::bounds::Interval;
 use crate::hemispherical;
 use crate::leaf_bands::{LeafBandsOptions, LeafData, fit_bands};
 use crate::solver::Termination;
@@ -26,15 +27,18 @@ const SURFACES: usize = 2;
 /// The paper's bands (Table 4), nm: means of n and σ are taken here, or over all bands where there are none.
 const TABLE_4_NM: [f64; 2] = [480.0, 880.0];
 
+/// PROSPECT's refractive index, mean over 400–2500 nm.
+const MEAN_INDEX: f64 = 1.375;
+
 /// What the method makes of interior, gain and offset.
 fn treatments(options: &LeafOptions) -> [Treatment; COUNT] {
     let coupling = options.coupling;
     let mut treatments = core::array::from_fn(|i| {
-        let prior = options.priors.then(|| options.recipe.prior(i)).flatten();
-        let free = Treatment::Free { bounds: default_bounds(i, prior.is_some_and(|prior| prior.log)), prior };
+        let prior = options.content_priors.then(|| options.recipe.prior(i)).flatten();
+        let free = Treatment::within(i, default_bounds(i, prior.is_some_and(|prior| prior.log)), prior);
         match (interior(i), options.decided(i)) {
             (_, Some(Treatment::Held(value))) => Treatment::Held(value),
-            (_, Some(Treatment::Free { bounds, prior: own })) => Treatment::Free { bounds, prior: own.or(prior) },
+            (_, Some(Treatment::Free { bounds, prior: own })) => Treatment::within(i, bounds, own.or(prior)),
             // N acts on the diffuse reflectance mostly as a factor: beside a free gain it is held
             (Some(Parameter::NStruct), None) if coupling == Coupling::GainOffset => {
                 Treatment::Held(options.recipe.n_struct)
@@ -158,6 +162,13 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
         };
     }
     let scaled_index = options.coupling == Coupling::Prospecular && treatments[N].is_free() && options.scaled_index();
+    let mut surfaces = surfaces;
+    if scaled_index {
+        // PROSPECT's index is 1.27 to 1.52; below 0.79 the product would leave the Fresnel equations' domain
+        let bounds = Interval::new(0.8, 2.0);
+        treatments[N] = Treatment::Free { bounds, prior: None };
+        surfaces.iter_mut().for_each(|x| x[N] = bounds.clip(x[N] / MEAN_INDEX));
+    }
     let thin: Vec<usize> = {
         let step = leaf.bands.len().div_ceil(THIN);
         (0..leaf.bands.len()).step_by(step.max(1)).collect()
@@ -234,6 +245,7 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
         prior_share: errors.prior_share,
         at_bound: at.at_bound,
         has_surface: leaf.seen >= LEAST_DIRECTIONS,
+        scaled_index,
         bands: leaf.bands.clone(),
         wavelengths_nm: leaf.wavelengths_nm.clone(),
         k_lambert: spectrum.k_lambert,

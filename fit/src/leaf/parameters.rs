@@ -94,6 +94,15 @@ pub enum Treatment {
 }
 
 impl Treatment {
+    /// Sought within bounds of the caller's, with a prior; a logarithm has no place for 0.
+    pub(super) fn within(place: usize, bounds: Interval<f64>, prior: Option<Prior>) -> Self {
+        let lowest = match (prior, interior(place)) {
+            (Some(Prior { log: true, .. }), Some(parameter)) => 1e-5 * parameter.typical().1,
+            _ => f64::NEG_INFINITY,
+        };
+        Treatment::Free { bounds: Interval::new(bounds.lower.max(lowest), bounds.upper), prior }
+    }
+
     /// Is it sought?
     pub const fn is_free(&self) -> bool {
         matches!(self, Treatment::Free { .. })
@@ -130,8 +139,9 @@ impl Axis {
             Treatment::Free { bounds, prior } => (bounds, prior),
         };
         match place {
-            model::N => Axis::Fresnel(bounds),
-            model::SIGMA | GAIN => Axis::Log(bounds),
+            // below 1 it is a coefficient on the tabulated index
+            model::N if bounds.lower > 1.0 => Axis::Fresnel(bounds),
+            model::N | model::SIGMA | GAIN => Axis::Log(bounds),
             _ => match interior(place) {
                 Some(Parameter::NStruct) => Axis::Log(bounds),
                 // a logarithmic prior has no place for 0

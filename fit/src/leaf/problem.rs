@@ -86,7 +86,7 @@ pub struct LeafOptions {
     /// What the caller decides of interior, gain and offset, by place in [`NAMES`]: the rest is the method's.
     pub treatments: Vec<(usize, Treatment)>,
     /// The interior's parameters have the recipe's priors in the other methods too.
-    pub priors: bool,
+    pub content_priors: bool,
     /// Starts of the caller's own, tried beside the method's.
     pub starts: Vec<[f64; COUNT]>,
     /// Only the caller's starts.
@@ -113,7 +113,7 @@ impl LeafOptions {
             interior: Interior::Plain,
             surface_from: SurfaceFrom::default(),
             treatments: Vec::new(),
-            priors: false,
+            content_priors: false,
             starts: Vec::new(),
             only_starts: false,
             tolerance: 1e-10,
@@ -199,23 +199,15 @@ fn coupling_bounds(place: usize) -> (f64, f64) {
     if place == GAIN { (0.1, 10.0) } else { (-1.0, 1.0) }
 }
 
-/// The widest sensible interval of a parameter: what is possible where a logarithmic prior keeps it, else what leaves have.
+/// The interval of a parameter where nobody says another: what is possible where a logarithmic prior keeps it, else what leaves
+/// have.
 pub fn default_bounds(place: usize, log_prior: bool) -> Interval<f64> {
     match interior(place) {
-        Some(parameter) => {
-            let usual = Free::<f64>::new(parameter).bounds;
-            // a logarithm has no place for 0: a ten-thousandth of what is usual acts on no spectrum
-            if log_prior {
-                let (_, highest) = parameter.limits();
-                let lowest = if parameter == Parameter::NStruct { 1.0 } else { 1e-4 * parameter.typical().1 };
-                Interval::new(
-                    lowest.min(1e-5 * highest).max(if parameter == Parameter::NStruct { 1.0 } else { 0.0 }),
-                    highest,
-                )
-            } else {
-                usual
-            }
+        Some(parameter) if log_prior => {
+            let (lowest, highest) = parameter.limits();
+            Interval::new(lowest, highest)
         }
+        Some(parameter) => Free::<f64>::new(parameter).bounds,
         None => {
             let (lower, upper) = coupling_bounds(place);
             Interval::new(lower, upper)

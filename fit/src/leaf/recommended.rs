@@ -89,11 +89,11 @@ fn treatments(options: &LeafOptions) -> [Treatment; COUNT] {
     let recipe = options.recipe;
     let mut treatments = core::array::from_fn(|i| {
         let prior = recipe.prior(i);
-        let free = Treatment::Free { bounds: default_bounds(i, prior.is_some_and(|prior| prior.log)), prior };
+        let free = Treatment::within(i, default_bounds(i, prior.is_some_and(|prior| prior.log)), prior);
         match (interior(i), options.decided(i)) {
             (_, Some(Treatment::Held(value))) => Treatment::Held(value),
             // freed by the caller within bounds: the recipe's prior stays
-            (_, Some(Treatment::Free { bounds, prior: own })) => Treatment::Free { bounds, prior: own.or(prior) },
+            (_, Some(Treatment::Free { bounds, prior: own })) => Treatment::within(i, bounds, own.or(prior)),
             (Some(leafbrdf_prospect::Parameter::NStruct), None) => Treatment::Held(recipe.n_struct),
             (Some(_), None) => free,
             (None, None) if i == GAIN || i == OFFSET => free,
@@ -360,6 +360,7 @@ fn with_surface(
         }),
         at_bound: core::array::from_fn(|i| if of_surface(i) { at_bound[i] } else { step.at_bound[i] }),
         has_surface,
+        scaled_index: false,
         bands: leaf.bands.clone(),
         wavelengths_nm: leaf.wavelengths_nm.clone(),
         k_lambert: spectrum.k_lambert,

@@ -100,6 +100,8 @@ pub struct LeafFit {
     pub at_bound: [AtBound; COUNT],
     /// Is there a surface at all? Not from fewer than three directions.
     pub has_surface: bool,
+    /// Is n a coefficient on PROSPECT's tabulated index?
+    pub scaled_index: bool,
     /// Place of each fitted wavelength in the data.
     pub bands: Vec<usize>,
     /// Fitted wavelengths, nm.
@@ -116,7 +118,7 @@ pub struct LeafFit {
     pub r2: f64,
     /// Values used.
     pub n_obs: usize,
-    /// As many independent values, residuals of neighbouring wavelengths being alike: n (1 − ρ)/(1 + ρ).
+    /// As many independent values, residuals of neighbouring wavelengths being alike: n (1 − ρ)/(1 + ρ), at least one a direction.
     pub n_effective: f64,
     /// The cost that was minimised (of the interior step, for the recommended method).
     pub cost: f64,
@@ -205,9 +207,10 @@ pub(super) struct Scatter {
 
 /// Residuals of one direction after the other: how much neighbours resemble each other.
 pub(super) fn scatter(measured: &[f64], modelled: &[f64], bands: usize) -> Scatter {
-    let (mut lagged, mut paired, mut n_obs) = (0.0, 0.0, 0);
+    let (mut lagged, mut paired, mut n_obs, mut directions) = (0.0, 0.0, 0, 0.0);
     for (y, f) in measured.chunks_exact(bands.max(1)).zip(modelled.chunks_exact(bands.max(1))) {
         let mut before: Option<f64> = None;
+        directions += f64::from(u8::from(y.iter().any(|y| !y.is_nan())));
         for (y, f) in y.iter().zip(f) {
             if y.is_nan() {
                 before = None;
@@ -224,7 +227,8 @@ pub(super) fn scatter(measured: &[f64], modelled: &[f64], bands: usize) -> Scatt
     }
     let rho = if paired > 0.0 { f64::clamp(lagged / paired, 0.0, 1.0) } else { 0.0 };
     let n = n_obs as f64;
-    Scatter { n_obs, n_effective: (n * (1.0 - rho) / (1.0 + rho)).clamp(n.min(2.0), n) }
+    // residuals that are the same at all wavelengths are still one draw a direction
+    Scatter { n_obs, n_effective: (n * (1.0 - rho) / (1.0 + rho)).clamp(directions, n) }
 }
 
 /// How large the residuals are taken to be.

@@ -12,7 +12,10 @@ use leafbrdf::output::file_name;
 use leafbrdf::spectra::{LeafSpectra, read_spectra};
 use leafbrdf_fit::Interval;
 use leafbrdf_fit::hemispherical::{Free, default_free};
-use leafbrdf_prospect::{Error, LeafParams, Parameter, Prospect, table};
+use leafbrdf_fit::leaf::Treatment;
+use leafbrdf_fit::leaf::default_bounds;
+use leafbrdf_fit::leaf::parameters::place;
+use leafbrdf_prospect::{Error, LeafParams, Parameter, Prospect, Version, table};
 use rayon::prelude::*;
 
 use super::super::Failure;
@@ -21,13 +24,15 @@ use super::{Arguments, Range, prepare, progress_bar};
 
 /// The options that only this model has.
 #[derive(Args, Debug)]
-#[command(next_help_heading = "Options of --model prospect")]
+#[group(id = "prospect_options")]
+#[command(next_help_heading = "Options of --model prospect and leaf")]
 pub struct Options {
     /// Version of PROSPECT [default: D]
     #[arg(long, value_enum, ignore_case = true)]
     prospect: Option<VersionName>,
-    /// Parameters that are free, such as n_struct,cab,cm; all others are held, at 0 or as --fix says [default: all of the
-    /// version that --fix and --car-per-cab leave; for PRO without cm, which is prot + cbc there]
+    /// Parameters that are free, such as n_struct,cab,cm; all others are held, at 0 or as --fix says (with leaf n_struct at what
+    /// the recommended method holds it at) [default: all of the version that --fix and --car-per-cab leave; for PRO without cm,
+    /// which is prot + cbc there; without n_struct where a gain is free]
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     free: Vec<Name>,
     /// Parameters that are held, and where
@@ -43,6 +48,13 @@ pub struct Options {
     /// Where a leaf has no transmittance: take n_struct from its reflectance at 1131 nm (or 800 nm), and hold it
     #[arg(long)]
     n_prior: bool,
+}
+
+/// What the options decide of a leaf's interior.
+pub(super) struct Decided {
+    pub version: Version,
+    pub car_per_cab: Option<f64>,
+    pub treatments: Vec<(Parameter, Treatment)>,
 }
 
 /// A parameter by its name.
@@ -107,15 +119,94 @@ impl Options {
             ("--n-prior", self.n_prior),
         ];
         match given.iter().find(|(_, given)| *given) {
-            Some((option, _)) => Err(Failure::Usage(format!("{option} is an option of --model prospect"))),
+            Some((option, _)) => Err(Failure::Usage(format!("{option} is an option of --model prospect and leaf"))),
             None => Ok(()),
         }
+    }
+
+    /// The same options for `--model leaf`: what they decide, the rest being the method's.
+    pub(super) fn decided(&self, default: Version) -> Result<Decided, Failure> {
+        let usage = |message: String| Err(Failure::Usage(message));
+        if self.n_prior {
+            return usage(
+                "--n-prior is an option of --model prospect: --model leaf holds n_struct, or frees it".to_string(),
+            );
+        }
+        let version = self.prospect.map_or(default, |name| name.0);
+        let known =
+            |parameter: Parameter| parameter == Parameter::NStruct || version.constituents().contains(&parameter);
+        if let Some(ratio) = self.car_per_cab {
+            let model = Prospect::new(table::full(version));
+            model.with_car_per_cab(ratio).map_err(|error| Failure::Usage(format!("--car-per-cab: {error}")))?;
+        }
+        let mut treatments: Vec<(Parameter, Treatment)> = Vec::new();
+        for Value(parameter, value) in &self.fix {
+            let name = parameter.name();
+            if treatments.iter().any(|(other, _)| other == parameter) {
+                return usage(format!("--fix {name} stands twice"));
+            }
+            if !known(*parameter) && *value != 0.0 {
+                return usage(format!("--fix: {}", Error::NotInVersion { parameter: *parameter, version }));
+            }
+            if *parameter == Parameter::Car && self.car_per_cab.is_some() {
+                return usage("--fix car: car is tied to cab; leave it out, or leave --car-per-cab out".to_string());
+            }
+            let (lowest, highest) = parameter.limits();
+            if !(*value >= lowest && *value <= highest) {
+                return usage(format!("--fix: {}", Error::Outside { parameter: *parameter, value: *value }));
+            }
+            treatments.push((*parameter, Treatment::Held(*value)));
+        }
+        for (place, Name(parameter)) in self.free.iter().enumerate() {
+            let name = parameter.name();
+            if self.free.iter().take(place).any(|other| other.0 == *parameter) {
+                return usage(format!("--free {name} stands twice"));
+            }
+            if treatments.iter().any(|(other, _)| other == parameter) {
+                return usage(format!("{name} is free and fixed: leave it out of --free or of --fix"));
+            }
+            if !known(*parameter) {
+                return usage(format!("--free: {}", Error::NotInVersion { parameter: *parameter, version }));
+            }
+            if *parameter == Parameter::Car && self.car_per_cab.is_some() {
+                return usage(
+                    "car is free and tied to cab: leave it out of --free, or leave --car-per-cab out".to_string(),
+                );
+            }
+        }
+        let split = [Parameter::Prot, Parameter::Cbc].iter().any(|part| self.free.iter().any(|name| name.0 == *part));
+        if version == Version::Pro && split && self.free.iter().any(|name| name.0 == Parameter::Cm) {
+            return usage(format!("--free: {}", Error::DryMatterTwice));
+        }
+        for parameter in Parameter::ALL {
+            let free = self.free.iter().any(|name| name.0 == parameter);
+            let bounds = self.bounds.iter().find(|bounds| bounds.0 == parameter).map(|bounds| bounds.1);
+            let fixed = treatments.iter().any(|(other, _)| *other == parameter);
+            if bounds.is_some() && (fixed || !known(parameter) || (!self.free.is_empty() && !free)) {
+                return usage(format!("--bounds {}: the parameter is not free", parameter.name()));
+            }
+            let log = false;
+            match (bounds, free, fixed) {
+                (Some(bounds), ..) => treatments.push((parameter, Treatment::Free { bounds, prior: None })),
+                (None, true, _) => {
+                    let bounds = default_bounds(place(parameter), log);
+                    treatments.push((parameter, Treatment::Free { bounds, prior: None }));
+                }
+                (None, false, false)
+                    if !self.free.is_empty() && parameter != Parameter::NStruct && known(parameter) =>
+                {
+                    treatments.push((parameter, Treatment::Held(0.0)));
+                }
+                _ => {}
+            }
+        }
+        Ok(Decided { version, car_per_cab: self.car_per_cab, treatments })
     }
 
     /// What is sought, checked as far as that can be done without a spectrum.
     fn options(&self, arguments: &Arguments) -> Result<ProspectOptions, Failure> {
         let usage = |message: String| Err(Failure::Usage(message));
-        let version = self.prospect.map_or(leafbrdf_prospect::Version::D, |name| name.0);
+        let version = self.prospect.map_or(Version::D, |name| name.0);
         let mut held = LeafParams::with_n_struct(f64::NAN);
         for (place, Value(parameter, value)) in self.fix.iter().enumerate() {
             if self.fix.iter().take(place).any(|other| other.0 == *parameter) {
@@ -231,6 +322,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let options = arguments.prospect.options(arguments)?;
     refuse_others(arguments)?;
     arguments.surface.refuse("prospect")?;
+    arguments.leaf.refuse("prospect")?;
     let pool = prepare(arguments)?;
     let bar = progress_bar("leaves");
     let leaves = read(arguments);

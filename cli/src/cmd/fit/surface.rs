@@ -188,6 +188,7 @@ fn absent(option: &str, place: usize) -> Failure {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.check_starts()?;
     arguments.prospect.refuse()?;
+    arguments.leaf.refuse("surface")?;
     let options = arguments.surface.surface(arguments, SurfaceOptions::paper())?;
     let pool = prepare(arguments)?;
     let bar = progress_bar("leaves");

@@ -1,0 +1,251 @@
+//! `leafbrdf fit --model leaf`: surface and interior of whole leaves.
+
+use std::fs;
+use std::io::{self, Write};
+
+use clap::{Args, ValueEnum};
+use leafbrdf::fit::{LeafOutcome, LeafRecord, Selected, Selection, fit_leaf, write_records};
+use leafbrdf::output::file_name;
+use leafbrdf_fit::leaf::parameters::{GAIN, OFFSET, place};
+use leafbrdf_fit::leaf::recipe::{DORSIVENTRAL, PLAIN, TWO_LAYER};
+use leafbrdf_fit::leaf::{Interior, LeafOptions, Method, Recipe, SurfaceFrom, Treatment};
+use leafbrdf_prospect::Coupling;
+use rayon::prelude::*;
+
+use super::super::Failure;
+use super::super::leaf::CouplingName;
+use super::{Arguments, Input, Range, prepare, progress_bar, read};
+
+/// How a leaf is inverted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// The most accurate that is known: the interior from the leaf's darkest directions, N held, gain and flat offset free; then the
+    /// surface (GGX facets, P1 diffuse term, tilt) from all directions
+    Recommended,
+    /// The paper's (§4.6): n and σ first; then Eq. 17 inverted for the interior
+    TwoStep,
+    /// Everything at once (Eq. 18)
+    Joint,
+}
+
+/// The inside of the leaf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum InteriorName {
+    /// Two piles of plates, two thirds of the pigments in the upper one: an assumption, chosen by chemistry
+    Dorsiventral,
+    /// The same with 65 %, and other constants of the recommended method
+    TwoLayer,
+    /// PROSPECT as it is
+    Plain,
+}
+
+impl InteriorName {
+    fn recipe(self) -> &'static Recipe {
+        match self {
+            InteriorName::Dorsiventral => &DORSIVENTRAL,
+            InteriorName::TwoLayer => &TWO_LAYER,
+            InteriorName::Plain => &PLAIN,
+        }
+    }
+}
+
+/// Where two-step takes n and σ from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FromName {
+    /// Means over separately fitted bands (Table 4)
+    Bands,
+    /// One n and σ for all bands
+    Surface,
+}
+
+/// The options that only this model has.
+#[derive(Args, Debug)]
+#[group(id = "leaf_options")]
+#[command(next_help_heading = "Options of --model leaf")]
+pub struct Options {
+    /// How the leaf is inverted [default: recommended]
+    #[arg(long, value_enum)]
+    method: Option<MethodName>,
+    /// From the interior to k_L, for two-step and joint; recommended has gain-offset [default: bousquet]
+    #[arg(long, value_enum)]
+    coupling: Option<CouplingName>,
+    /// The inside of the leaf; with recommended also the constants that go with it [default: dorsiventral for recommended, plain
+    /// for the others]
+    #[arg(long, value_enum)]
+    interior: Option<InteriorName>,
+    /// Where two-step takes n and sigma from [default: bands with the paper's surface, else surface]
+    #[arg(long, value_enum)]
+    surface_from: Option<FromName>,
+    /// Contents, gain and offset have the wide priors of recommended in two-step and joint too
+    #[arg(long)]
+    content_priors: bool,
+    /// Hold the gain of coupling gain-offset here
+    #[arg(long, value_name = "GAIN")]
+    gain: Option<f64>,
+    /// Hold the offset of couplings offset and gain-offset here
+    #[arg(long, value_name = "OFFSET", allow_negative_numbers = true)]
+    offset: Option<f64>,
+}
+
+impl Options {
+    /// For the other models: none of these options must be there.
+    pub fn refuse(&self, model: &str) -> Result<(), Failure> {
+        let given = [
+            ("--method", self.method.is_some()),
+            ("--coupling", self.coupling.is_some()),
+            ("--interior", self.interior.is_some()),
+            ("--surface-from", self.surface_from.is_some()),
+            ("--content-priors", self.content_priors),
+            ("--gain", self.gain.is_some()),
+            ("--offset", self.offset.is_some()),
+        ];
+        match given.iter().find(|(_, given)| *given) {
+            Some((option, _)) => {
+                Err(Failure::Usage(format!("{option} has no meaning for --model {model}: it is one of --model leaf")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// What is sought, and how.
+    fn options(&self, arguments: &Arguments) -> Result<LeafOptions, Failure> {
+        let usage = |message: &str| Err(Failure::Usage(message.to_string()));
+        let method = match self.method.unwrap_or(MethodName::Recommended) {
+            MethodName::Recommended => Method::Recommended,
+            MethodName::TwoStep => Method::TwoStep,
+            MethodName::Joint => Method::Joint,
+        };
+        if arguments.robust {
+            return usage("--robust has no meaning for --model leaf: leave it out");
+        }
+        if arguments.k_l_bounds != Range(0.01, 0.99) {
+            return usage("--k-l-bounds has no meaning for --model leaf, where k_l follows from the interior");
+        }
+        let mut options = LeafOptions::new(method);
+        options.surface = arguments.surface.surface(arguments, options.surface)?;
+        options.content_priors = self.content_priors;
+        if method == Method::Recommended {
+            if self.coupling.is_some_and(|name| name.0 != Coupling::GainOffset) {
+                return usage(
+                    "--method recommended has the coupling gain-offset: use --method joint or two-step for others",
+                );
+            }
+            if self.content_priors {
+                return usage("--content-priors: --method recommended always has them");
+            }
+            if let Some(name) = self.interior {
+                options.recipe = name.recipe();
+            }
+        } else {
+            options.coupling = self.coupling.map_or(Coupling::Bousquet, |name| name.0);
+            options.interior = self.interior.map_or(Interior::Plain, |name| name.recipe().interior);
+        }
+        if let Some(from) = self.surface_from {
+            if method != Method::TwoStep {
+                return usage("--surface-from is an option of --method two-step");
+            }
+            options.surface_from = match from {
+                FromName::Bands => SurfaceFrom::Bands,
+                FromName::Surface => SurfaceFrom::Surface,
+            };
+        }
+        let coupling = if method == Method::Recommended { Coupling::GainOffset } else { options.coupling };
+        for (option, value, at, has) in [
+            ("--gain", self.gain, GAIN, coupling == Coupling::GainOffset),
+            ("--offset", self.offset, OFFSET, matches!(coupling, Coupling::GainOffset | Coupling::Offset)),
+        ] {
+            let Some(value) = value else { continue };
+            if !has {
+                let message = format!("{option}: coupling {} has none; try --coupling gain-offset", coupling.name());
+                return Err(Failure::Usage(message));
+            }
+            if !value.is_finite() || (at == GAIN && value <= 0.0) {
+                return Err(Failure::Usage(format!("{option} {value}: expected a number, and a gain > 0")));
+            }
+            options.treatments.push((at, Treatment::Held(value)));
+        }
+        arguments.prospect.interior_of_a_leaf(&mut options)?;
+        Ok(options)
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    arguments.check_starts()?;
+    let options = arguments.leaf.options(arguments)?;
+    let pool = prepare(arguments)?;
+    let bar = progress_bar("leaves");
+    let leaves = read(arguments);
+    let several = leaves.len() > 1;
+    bar.set_length(leaves.len() as u64);
+
+    let results: Vec<Result<LeafOutcome, String>> = pool.install(|| {
+        leaves
+            .par_iter()
+            .map(|leaf| {
+                let result = one_leaf(leaf, arguments, &options, several);
+                bar.inc(1);
+                result
+            })
+            .collect()
+    });
+    bar.finish_and_clear();
+
+    let values = |result: &Result<LeafOutcome, String>| result.as_ref().map(LeafOutcome::values).map_err(Clone::clone);
+    let records: Vec<LeafRecord> =
+        leaves.iter().zip(&results).map(|(leaf, r)| (leaf.name.clone(), leaf.file.clone(), values(r))).collect();
+    write_records(&arguments.output, "leaf", Some(options.surface.normalization.name()), &records)
+        .map_err(|error| Failure::writing(Some(&arguments.output.join("leaves.csv")), &error))?;
+    report(&leaves, &results)
+}
+
+fn one_leaf(input: &Input, arguments: &Arguments, options: &LeafOptions, several: bool) -> Result<LeafOutcome, String> {
+    let data = input.data.as_ref().map_err(Clone::clone)?;
+    let words = |failure: &dyn std::fmt::Display| format!("{}: leaf {}: {failure}", input.file, input.name);
+    let selection = Selection {
+        wavelengths: arguments.wavelengths,
+        max_theta_v_deg: arguments.max_theta_v,
+        use_sd: !arguments.ignore_sd,
+    };
+    let selected = Selected::new(data, &selection).map_err(|failure| words(&failure))?;
+    let outcome = fit_leaf(data, selected, options).map_err(|failure| words(&failure))?;
+    let folder = if several { arguments.output.join(file_name(&input.name)) } else { arguments.output.clone() };
+    fs::create_dir_all(&folder)
+        .and_then(|()| outcome.write_tables(&folder))
+        .and_then(|()| outcome.write_summary(&folder, data, &input.file))
+        .map_err(|error| format!("{}: cannot be written: {error}", folder.display()))?;
+    Ok(outcome)
+}
+
+/// Results, warnings and failures on standard error; failure of the command where a leaf has failed.
+fn report(leaves: &[Input], results: &[Result<LeafOutcome, String>]) -> Result<(), Failure> {
+    let mut errors = io::stderr().lock();
+    let mut failed = 0;
+    for (leaf, result) in leaves.iter().zip(results) {
+        // Messages are a courtesy: where standard error is closed, the files are what was asked for.
+        let _ = match result {
+            Ok(outcome) => {
+                let _ = writeln!(errors, "{}: {}", leaf.name, outcome.line());
+                outcome.warnings.iter().try_for_each(|warning| writeln!(errors, "warning: {}: {warning}", leaf.name))
+            }
+            Err(sentence) => {
+                failed += 1;
+                writeln!(errors, "error: {sentence}")
+            }
+        };
+    }
+    match failed {
+        0 => Ok(()),
+        _ => Err(Failure::Failed(format!("{failed} of {} leaves failed, the others are done", leaves.len()))),
+    }
+}
+
+/// What --prospect, --free, --fix, --bounds and --car-per-cab say of a leaf's interior.
+impl super::prospect::Options {
+    fn interior_of_a_leaf(&self, options: &mut LeafOptions) -> Result<(), Failure> {
+        let decided = self.decided(options.version)?;
+        options.version = decided.version;
+        options.car_per_cab = decided.car_per_cab;
+        options.treatments.extend(decided.treatments.into_iter().map(|(parameter, what)| (place(parameter), what)));
+        Ok(())
+    }
+}

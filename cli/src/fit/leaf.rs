@@ -1,0 +1,308 @@
+//! `--model leaf`: the surface and the interior of a whole leaf from its directional reflectance.
+
+mod summary;
+
+use std::io;
+use std::path::Path;
+
+use leafbrdf_core::{Angle, Diffuse, DomainError, Grade, Illumination, P1};
+use leafbrdf_fit::AtBound;
+use leafbrdf_fit::leaf::parameters::{GAIN, NAMES, OFFSET, interior, place};
+use leafbrdf_fit::leaf::{DirectionalData, Interior, Knowledge, LeafFit, LeafOptions, Method, Treatment, dhrf, fit};
+use leafbrdf_fit::surface::DiffuseKind;
+use leafbrdf_fit::surface::model::{DIFFUSE_A, DIFFUSE_B, N, PARAMETERS, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
+use leafbrdf_prospect::{Coupling, Parameter, Version, table};
+
+use super::{FitFailure, LeafValues, Selected};
+use crate::measurement::Measurement;
+use crate::output::{Cell, Format, TableWriter};
+
+/// One leaf, inverted.
+#[derive(Clone, Debug)]
+pub struct LeafOutcome {
+    /// What was fitted.
+    pub selected: Selected,
+    /// The result.
+    pub fit: LeafFit,
+    /// How.
+    pub options: LeafOptions,
+    /// What the user should know before using the numbers.
+    pub warnings: Vec<String>,
+    /// DHRF_spec, its standard error, and the diffuse term's DHRF for k_L = 1, at every source angle.
+    dhrf: Vec<Dhrf>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Dhrf {
+    theta_s_deg: f64,
+    specular: f64,
+    specular_se: f64,
+    diffuse: f64,
+}
+
+/// Inverts the selected data.
+///
+/// # Errors
+/// What the solver refuses, in words.
+pub fn fit_leaf(leaf: &Measurement, selected: Selected, options: &LeafOptions) -> Result<LeafOutcome, FitFailure> {
+    let data = DirectionalData {
+        wavelengths_nm: &selected.wavelengths_nm,
+        directions: &selected.vectors,
+        brdf: &selected.brdf,
+        sd: selected.sd.as_deref(),
+    };
+    let fit = fit(&data, options).map_err(|error| FitFailure(error.to_string()))?;
+    let mut outcome = LeafOutcome { selected, fit, options: options.clone(), warnings: Vec::new(), dhrf: Vec::new() };
+    let sources = outcome.selected.sources_deg();
+    let budget = sources.into_iter().map(|theta| outcome.budget(theta)).collect::<Result<_, DomainError>>();
+    outcome.dhrf = budget.map_err(|error| FitFailure(error.to_string()))?;
+    outcome.warnings = outcome.warn(leaf);
+    Ok(outcome)
+}
+
+/// By what to multiply a parameter in files: angles are in degrees there.
+fn unit(i: usize) -> f64 {
+    if i == TILT_IN_PLANE || i == TILT_LATERAL { 1.0_f64.to_degrees() } else { 1.0 }
+}
+
+impl LeafOutcome {
+    /// The coupling that k_L was made by.
+    fn coupling(&self) -> Coupling {
+        if self.fit.method == Method::Recommended { Coupling::GainOffset } else { self.options.coupling }
+    }
+
+    /// The inside of the leaf.
+    fn interior(&self) -> Interior {
+        if self.fit.method == Method::Recommended { self.options.recipe.interior } else { self.options.interior }
+    }
+
+    /// Has the model this parameter at all?
+    fn has(&self, i: usize) -> bool {
+        match i {
+            N | SIGMA => self.fit.has_surface,
+            DIFFUSE_A | DIFFUSE_B => self.fit.has_surface && self.options.surface.diffuse == DiffuseKind::P1,
+            _ if i < PARAMETERS => self.fit.has_surface && self.fit.treatments[i] != Treatment::Held(0.0),
+            GAIN => self.coupling() == Coupling::GainOffset,
+            OFFSET => matches!(self.coupling(), Coupling::GainOffset | Coupling::Offset),
+            _ => match interior(i) {
+                Some(Parameter::NStruct) => true,
+                Some(Parameter::Cm) if self.fit.version == Version::Pro => true,
+                Some(parameter) => self.fit.version.constituents().contains(&parameter),
+                None => false,
+            },
+        }
+    }
+
+    /// Do the data, or whoever held it, say what it is?
+    fn is_known(&self, i: usize) -> bool {
+        !matches!(self.fit.knowledge[i], Knowledge::NotIdentifiable | Knowledge::PriorOnly)
+    }
+
+    /// Dry matter that was fitted as C_prot + C_cbc.
+    fn split_dry_matter(&self, i: usize) -> bool {
+        i == place(Parameter::Cm) && self.fit.version == Version::Pro && self.fit.x[i] == 0.0
+    }
+
+    /// The value in the unit of files; `None` where the model has no such parameter, or nothing is known of it.
+    fn value(&self, i: usize) -> Option<f64> {
+        if !self.has(i) {
+            return None;
+        }
+        let parts = [Parameter::Prot, Parameter::Cbc].map(place);
+        if self.split_dry_matter(i) {
+            return parts.iter().all(|&part| self.is_known(part)).then(|| self.fit.interior().cm);
+        }
+        if i == place(Parameter::Car) && self.fit.car_per_cab.is_some() {
+            return self.is_known(place(Parameter::Cab)).then(|| self.fit.interior().car);
+        }
+        if i == N && self.fit.scaled_index {
+            return Some(self.fit.x[N] * self.mean_index());
+        }
+        self.is_known(i).then(|| self.fit.x[i] * unit(i))
+    }
+
+    fn standard_error(&self, i: usize) -> Option<f64> {
+        self.value(i)?;
+        match interior(i) {
+            Some(parameter) => self.fit.interior_se(parameter),
+            None if i == N && self.fit.scaled_index => Some(self.fit.standard_errors[N]? * self.mean_index()),
+            None => self.fit.standard_errors[i].map(|error| error * unit(i)),
+        }
+    }
+
+    /// PROSPECT's refractive index, mean over the fitted wavelengths.
+    fn mean_index(&self) -> f64 {
+        let sum: f64 = self.fit.wavelengths_nm.iter().map(|nm| self.index_at(*nm)).sum();
+        sum / self.fit.wavelengths_nm.len() as f64
+    }
+
+    fn index_at(&self, nm: f64) -> f64 {
+        let band = (nm - 400.0).round().clamp(0.0, 2100.0) as usize;
+        table::full(self.fit.version).refractive_index(band).unwrap_or(f64::NAN)
+    }
+
+    /// n and σ of a wavelength.
+    fn surface_at(&self, nm: f64) -> [Option<f64>; 2] {
+        let n =
+            if self.fit.scaled_index && self.has(N) { Some(self.fit.x[N] * self.index_at(nm)) } else { self.value(N) };
+        [n, self.value(SIGMA)]
+    }
+
+    /// DHRF at θ_s from the leaf's own normal: a tilt in the holder has no part in it.
+    fn budget(&self, theta_s_deg: f64) -> Result<Dhrf, DomainError> {
+        let angle = Angle::from_degrees(theta_s_deg);
+        let nothing = Dhrf { theta_s_deg, specular: f64::NAN, specular_se: f64::NAN, diffuse: 1.0 };
+        let diffuse = match self.options.surface.diffuse {
+            DiffuseKind::P1 if self.fit.has_surface => {
+                P1::new(self.fit.x[DIFFUSE_A], self.fit.x[DIFFUSE_B])?.hemispherical(angle.cos())
+            }
+            _ => 1.0,
+        };
+        let ([Some(n), Some(sigma)], true) = ([self.value(N), self.value(SIGMA)], self.fit.has_surface) else {
+            return Ok(Dhrf { diffuse, ..nothing });
+        };
+        let surface = &self.options.surface;
+        let gradient = dhrf(surface.facets, surface.normalization, n, sigma, &Illumination::new(angle)?, Grade::E10)?;
+        let c = &self.fit.covariance;
+        let variance = gradient.d_n * (gradient.d_n * c[N][N] + 2.0 * gradient.d_sigma * c[N][SIGMA])
+            + gradient.d_sigma * gradient.d_sigma * c[SIGMA][SIGMA];
+        let open = |i: usize| self.fit.treatments[i].is_free() && self.fit.at_bound[i] == AtBound::Free;
+        let unknown = [N, SIGMA].iter().any(|&i| open(i) && self.fit.standard_errors[i].is_none());
+        let specular_se = if unknown { f64::NAN } else { variance.max(0.0).sqrt() };
+        Ok(Dhrf { theta_s_deg, specular: gradient.value, specular_se, diffuse })
+    }
+
+    /// The leaf's row of `leaves.csv`.
+    pub fn values(&self) -> LeafValues {
+        let of = |parameter: Parameter| self.value(place(parameter));
+        LeafValues {
+            normalization: Some(self.options.surface.normalization.name().to_string()),
+            n: self.value(N),
+            sigma: self.value(SIGMA),
+            tilt_deg: [self.value(TILT_IN_PLANE), self.value(TILT_LATERAL)],
+            surface_se: [N, SIGMA, TILT_IN_PLANE, TILT_LATERAL].map(|i| self.standard_error(i)),
+            p1: [self.value(DIFFUSE_A), self.value(DIFFUSE_B)],
+            p1_se: [self.standard_error(DIFFUSE_A), self.standard_error(DIFFUSE_B)],
+            kinds: Some([self.options.surface.facets.name(), self.options.surface.diffuse.name()]),
+            prospect: Parameter::ALL.map(of),
+            prospect_se: Parameter::ALL.map(|parameter| self.standard_error(place(parameter))),
+            method: Some(self.fit.method.name()),
+            gain_and_offset: [self.value(GAIN), self.value(OFFSET)],
+            gain_and_offset_se: [self.standard_error(GAIN), self.standard_error(OFFSET)],
+            rmse: self.fit.rmse,
+            r2: self.fit.r2,
+            bands: self.fit.wavelengths_nm.len(),
+            warnings: self.warnings.clone(),
+        }
+    }
+
+    /// One line for people.
+    pub fn line(&self) -> String {
+        let numbers: Vec<String> = (0..NAMES.len())
+            .filter(|&i| self.fit.knowledge[i] != Knowledge::Held || i == place(Parameter::NStruct))
+            .filter_map(|i| {
+                let error = self.standard_error(i).map_or(String::new(), |error| format!(" ± {error:.1e}"));
+                Some(format!("{} {}{error}", NAMES[i], brief(self.value(i)?)))
+            })
+            .collect();
+        format!(
+            "{} bands, {}, rmse {:.3e} sr^-1, R2 {:.4}",
+            self.fit.wavelengths_nm.len(),
+            numbers.join(", "),
+            self.fit.rmse,
+            self.fit.r2
+        )
+    }
+
+    /// `sigma=upper;n=lower`, or nothing.
+    fn at_bound(&self) -> String {
+        let places = NAMES.iter().zip(self.fit.at_bound).filter_map(|(name, at)| match at {
+            AtBound::Free => None,
+            AtBound::Lower => Some(format!("{name}=lower")),
+            AtBound::Upper => Some(format!("{name}=upper")),
+        });
+        places.collect::<Vec<_>>().join(";")
+    }
+
+    /// Writes `bands.csv` and `dhrf.csv` into a folder, each whole or not at all.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn write_tables(&self, folder: &Path) -> io::Result<()> {
+        let columns = [
+            "wavelength_nm",
+            "k_l",
+            "n",
+            "sigma",
+            "rmse",
+            "n_obs",
+            "status",
+            "at_bound",
+            "k_l_se",
+            "n_se",
+            "sigma_se",
+            "p1_a",
+            "p1_b",
+            "tilt_in_plane_deg",
+            "tilt_lateral_deg",
+            "facets",
+            "diffuse",
+            "note",
+            "normalization",
+        ];
+        let fit = &self.fit;
+        let mut table = TableWriter::create(Some(&folder.join("bands.csv")), Some(Format::Csv), &columns)?;
+        let at_bound = self.at_bound();
+        let converged = if fit.termination.converged() { "converged" } else { "max_iterations" };
+        let surface = &self.options.surface;
+        for (place, nm) in fit.wavelengths_nm.iter().enumerate() {
+            let (squares, n_obs) = fit.squares[place];
+            let k_l = fit.k_lambert[place];
+            let mut row = vec![Cell::Number(*nm), Cell::Number(k_l)];
+            row.extend(self.surface_at(*nm).map(optional));
+            row.push(Cell::Number((squares / n_obs as f64).sqrt()));
+            row.extend([Cell::Count(n_obs as u64), Cell::Text(converged), Cell::Text(&at_bound)]);
+            row.push(optional(fit.k_lambert_se[place]));
+            row.extend([N, SIGMA].map(|i| optional(self.standard_error(i))));
+            row.extend([DIFFUSE_A, DIFFUSE_B, TILT_IN_PLANE, TILT_LATERAL].map(|i| optional(self.value(i))));
+            row.extend([surface.facets.name(), surface.diffuse.name()].map(Cell::Text));
+            row.push(Cell::Text(if k_l < 0.0 { "k_l negative" } else { "" }));
+            row.push(Cell::Text(surface.normalization.name()));
+            table.row(&row)?;
+        }
+        table.finish()?;
+
+        let columns = [
+            "wavelength_nm",
+            "theta_s_deg",
+            "dhrf_diffuse",
+            "dhrf_specular",
+            "dhrf",
+            "dhrf_specular_se",
+            "specular_share",
+            "normalization",
+        ];
+        let mut table = TableWriter::create(Some(&folder.join("dhrf.csv")), Some(Format::Csv), &columns)?;
+        for (nm, k_l) in fit.wavelengths_nm.iter().zip(&fit.k_lambert) {
+            for row in &self.dhrf {
+                let diffuse = k_l * row.diffuse;
+                let total = diffuse + row.specular;
+                let numbers =
+                    [*nm, row.theta_s_deg, diffuse, row.specular, total, row.specular_se, row.specular / total];
+                let mut cells: Vec<Cell<'_>> = numbers.map(Cell::Number).to_vec();
+                cells.push(Cell::Text(surface.normalization.name()));
+                table.row(&cells)?;
+            }
+        }
+        table.finish()
+    }
+}
+
+fn optional(number: Option<f64>) -> Cell<'static> {
+    number.map_or(Cell::Empty, Cell::Number)
+}
+
+/// Four digits.
+fn brief(value: f64) -> String {
+    if value.abs() >= 0.1 || value == 0.0 { format!("{value:.3}") } else { format!("{value:.3e}") }
+}

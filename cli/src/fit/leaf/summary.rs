@@ -1,0 +1,333 @@
+//! `summary.json` of a leaf: what was found, how well it is known, what was chosen and by what, and what to be warned of.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use leafbrdf_core::Normalization;
+use leafbrdf_fit::AtBound;
+use leafbrdf_fit::leaf::parameters::{NAMES, interior, place};
+use leafbrdf_fit::leaf::{Interior, Knowledge, Method, RecipeReport, Treatment};
+use leafbrdf_fit::surface::model::{N, SIGMA, TILT_LATERAL};
+use leafbrdf_prospect::Parameter;
+use serde_json::{Map, Value, json};
+
+use super::{LeafOutcome, unit};
+use crate::measurement::Measurement;
+use crate::output::AtomicFile;
+
+/// Another minimum whose cost is within this factor of the best is an ambiguity.
+const AMBIGUOUS: f64 = 1.1;
+/// From this condition number on (scaled to unit diagonal) errors of parameters lean on each other.
+const ILL_CONDITIONED: f64 = 1e4;
+
+/// A number, or `null` where there is none.
+fn finite(number: f64) -> Value {
+    if number.is_finite() { json!(number) } else { Value::Null }
+}
+
+impl LeafOutcome {
+    /// Writes `summary.json` into a folder, whole or not at all.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn write_summary(&self, folder: &Path, leaf: &Measurement, source: &str) -> io::Result<()> {
+        let mut file = AtomicFile::create(&folder.join("summary.json"))?;
+        serde_json::to_writer_pretty(&mut file, &self.json(leaf, source))?;
+        file.write_all(b"\n")?;
+        file.commit()
+    }
+
+    fn json(&self, leaf: &Measurement, source: &str) -> Value {
+        let (selected, fit) = (&self.selected, &self.fit);
+        let surface = &self.options.surface;
+        let metadata: Map<String, Value> =
+            leaf.metadata.iter().map(|(key, value)| (key.to_string(), json!(value))).collect();
+        let present: Vec<usize> = (0..NAMES.len()).filter(|&i| self.has(i)).collect();
+        let parameters: Map<String, Value> =
+            present.iter().map(|&i| (NAMES[i].to_string(), self.parameter(i))).collect();
+        let mut correlations = Map::new();
+        for (at, &i) in present.iter().enumerate() {
+            for &k in present.iter().skip(at + 1) {
+                if let Some(correlation) = fit.correlation(i, k).filter(|r| *r != 0.0) {
+                    correlations.insert(format!("{},{}", NAMES[i], NAMES[k]), finite(correlation));
+                }
+            }
+        }
+        let left_out = selected.wavelengths_nm.len() - fit.wavelengths_nm.len();
+        json!({
+            "program": {"name": "leafbrdf", "version": env!("CARGO_PKG_VERSION")},
+            "leaf": leaf.name,
+            "file": source,
+            "metadata": metadata,
+            "model": "leaf",
+            "method": fit.method.name(),
+            "prospect": fit.version.name(),
+            "coupling": self.coupling().name(),
+            "interior": self.interior_json(),
+            "facets": surface.facets.name(),
+            "diffuse": surface.diffuse.name(),
+            "normalization": surface.normalization.name(),
+            "normalization_constant_k": match surface.normalization {
+                Normalization::Bousquet2005 => "2 pi^2 (Eq. 10 as printed)",
+                Normalization::CookTorrance => "4 pi (as derived from Eqs 5, 6, 9)",
+            },
+            "units": {
+                "k_l": "1", "n": "1", "sigma": "1 (rms slope over both axes)", "p1_a": "1", "p1_b": "1",
+                "tilt_in_plane_deg": "degree, towards the source", "tilt_lateral_deg": "degree, towards phi_v = 90",
+                "n_struct": "1", "cab": "µg cm^-2", "car": "µg cm^-2", "cant": "µg cm^-2", "cbrown": "arbitrary", "cw": "cm",
+                "cm": "g cm^-2", "prot": "g cm^-2", "cbc": "g cm^-2", "gain": "1", "offset": "1",
+                "rmse": "sr^-1 of BRDF",
+            },
+            "recipe": fit.recipe.as_ref().map_or(Value::Null, |recipe| self.recipe(recipe)),
+            "weights": if selected.sd.is_some() { "1/sd^2" } else { "equal" },
+            "wavelengths_nm": {
+                "first": fit.wavelengths_nm.first(), "last": fit.wavelengths_nm.last(), "count": fit.wavelengths_nm.len(),
+            },
+            "theta_s_deg": selected.sources_deg(),
+            "parameters": parameters,
+            "car_per_cab": fit.car_per_cab,
+            "correlations": correlations,
+            "errors": {
+                "method": match fit.method {
+                    Method::Recommended => "interior: the recipe's residual covariance and priors, and what is held with its own \
+                        uncertainty (see recipe.held); surface: residual variance, neighbouring wavelengths counting as fewer",
+                    _ => "residual variance, neighbouring wavelengths counting as fewer: n (1 - rho)/(1 + rho), at least one a direction",
+                },
+                "effective_values": finite(fit.n_effective),
+                "condition_number": finite(fit.condition),
+                "prior_weight": finite(fit.prior_weight),
+            },
+            "k_l": {
+                "definition": "see coupling; bands.csv has its values",
+                "negative": fit.negative_k_lambert(),
+            },
+            "rmse": finite(fit.rmse),
+            "r2": finite(fit.r2),
+            "search": {
+                "converged": fit.termination.converged(),
+                "starts": fit.starts,
+                "starts_within_0.1_percent_of_the_best_cost": fit.agreeing,
+                "iterations": fit.iterations,
+                "cost": finite(fit.cost),
+                "second": fit.second.map_or(Value::Null, |other| {
+                    let mut one: Map<String, Value> = present
+                        .iter()
+                        .filter(|&&i| fit.treatments[i].is_free())
+                        .map(|&i| (NAMES[i].to_string(), finite(other.x[i] * unit(i))))
+                        .collect();
+                    one.insert("cost_ratio".to_string(), finite(other.cost / fit.cost));
+                    Value::Object(one)
+                }),
+            },
+            "directions": {
+                "used": selected.vectors.len(), "left_out_beyond_max_theta_v": selected.directions_left_out,
+            },
+            "values": {
+                "used": fit.n_obs,
+                "negative_among_them": selected.negative,
+                "left_out": {
+                    "missing": selected.missing, "beyond_max_theta_v": selected.beyond_theta_v,
+                    "other_wavelengths": selected.other_wavelengths,
+                    "wavelengths_without_values_or_outside_prospect": left_out,
+                },
+            },
+            "warnings": self.warnings,
+        })
+    }
+
+    fn interior_json(&self) -> Value {
+        match self.interior() {
+            Interior::Plain => json!({"kind": "plain"}),
+            Interior::TwoLayer { upper_share } => json!({
+                "kind": "two-layer", "upper_share": upper_share,
+                "assumption": "this share of all pigments lies in the optically upper half of the leaf",
+            }),
+        }
+    }
+
+    /// Every constant of the recommended method, and where it comes from.
+    fn recipe(&self, report: &RecipeReport) -> Value {
+        let recipe = report.recipe;
+        let directions: Vec<Value> = report
+            .kept
+            .iter()
+            .filter_map(|&kept| self.selected.directions.get(kept))
+            .map(|d| json!([d.theta_s_deg, d.theta_v_deg, d.phi_v_deg]))
+            .collect();
+        let priors: Map<String, Value> = (0..NAMES.len())
+            .filter_map(|i| {
+                let prior = self.fit.treatments[i].prior().filter(|_| i >= 6)?;
+                let sd = if prior.log { "sd_of_ln" } else { "sd" };
+                Some((NAMES[i].to_string(), json!({"centre": prior.centre, sd: prior.sd})))
+            })
+            .collect();
+        json!({
+            "name": recipe.name,
+            "chosen_by_chemistry": recipe.chosen,
+            "n_struct_held": recipe.n_struct,
+            "directions_kept": {
+                "rule": "the darkest half at 440, 450, 460, 680, 1930, 1940, 1950 nm, at least one",
+                "theta_s_theta_v_phi_v_deg": directions,
+            },
+            "wavelengths_nm": {
+                "first": report.wavelengths_nm.first(), "last": report.wavelengths_nm.last(),
+                "count": report.wavelengths_nm.len(), "step": recipe.grid_nm[2], "without": recipe.without_nm,
+            },
+            "residuals": {
+                "slow_sd": recipe.residuals.slow_sd, "length_nm": recipe.residuals.length_nm,
+                "white_sd": recipe.residuals.white_sd, "unit": "reflectance",
+            },
+            "priors": priors,
+            "held": {
+                "meaning": "one standard deviation of what is held, part of the standard errors",
+                "ln_n_struct": recipe.held_sd.log_n_struct, "upper_share": recipe.held_sd.upper_share,
+                "wavelength_nm": recipe.held_sd.wavelength_nm,
+            },
+            "cost": finite(report.cost),
+            "diffuse_gain": finite(report.diffuse_gain),
+            "diffuse_offset": finite(report.diffuse_offset),
+        })
+    }
+
+    fn parameter(&self, i: usize) -> Value {
+        let fit = &self.fit;
+        let knowledge = if self.split_dry_matter(i) {
+            "prot + cbc"
+        } else if i == place(Parameter::Car) && fit.car_per_cab.is_some() {
+            "tied to cab"
+        } else {
+            match fit.knowledge[i] {
+                Knowledge::Identified => "identified",
+                Knowledge::Held => "held",
+                Knowledge::AtBound => "at a bound",
+                Knowledge::NotIdentifiable => "not identifiable",
+                Knowledge::PriorOnly => "from its prior alone",
+                Knowledge::NoDegreesOfFreedom => "no degrees of freedom",
+            }
+        };
+        let mut one = json!({
+            "value": self.value(i).map_or(Value::Null, finite),
+            "standard_error": self.standard_error(i).map_or(Value::Null, finite),
+            "knowledge": knowledge,
+        });
+        let Some(map) = one.as_object_mut() else { return one };
+        if i == N && fit.scaled_index {
+            map.insert("index_coefficient".to_string(), finite(fit.x[N]));
+            map.insert("meaning".to_string(), json!("coefficient times PROSPECT's index, mean over the wavelengths"));
+        }
+        if let Treatment::Free { bounds, prior } = &fit.treatments[i] {
+            map.insert("bounds".to_string(), json!([bounds.lower * unit(i), bounds.upper * unit(i)]));
+            let at = match fit.at_bound[i] {
+                AtBound::Free => Value::Null,
+                AtBound::Lower => json!("lower"),
+                AtBound::Upper => json!("upper"),
+            };
+            map.insert("at_bound".to_string(), at);
+            if let Some(prior) = prior {
+                let (sd, scale) = if prior.log { ("sd_of_ln", 1.0) } else { ("sd", unit(i)) };
+                let prior = json!({
+                    "centre": prior.centre * unit(i), sd: prior.sd * scale,
+                    "share_of_its_variance_left": finite(fit.prior_share[i]),
+                });
+                map.insert("prior".to_string(), prior);
+            }
+        }
+        one
+    }
+
+    /// Sentences on what the numbers cannot be trusted for.
+    pub(super) fn warn(&self, leaf: &Measurement) -> Vec<String> {
+        let mut warnings: Vec<String> = leaf.azimuth_warning().into_iter().collect();
+        let fit = &self.fit;
+        let names = |of: &dyn Fn(usize) -> bool| {
+            let those = (0..NAMES.len()).filter(|&i| of(i));
+            those.map(|i| NAMES[i]).collect::<Vec<_>>().join(", ")
+        };
+        if !fit.termination.converged() {
+            warnings.push("the search did not converge: the parameters are where it stopped".to_string());
+        }
+        if fit.agreeing < fit.starts {
+            warnings.push(format!(
+                "{} of {} starts ended elsewhere, with a cost more than 0.1 % above the best",
+                fit.starts - fit.agreeing,
+                fit.starts
+            ));
+        }
+        if !fit.has_surface {
+            warnings.push(match fit.method {
+                Method::Recommended => {
+                    "fewer than 3 directions: no surface is fitted, and the offset holds what it reflects".to_string()
+                }
+                _ => format!(
+                    "fewer than 3 directions: n and sigma cannot be known and are held at {} and {}; --hold n=…,sigma=… for others",
+                    fit.x[N], fit.x[SIGMA]
+                ),
+            });
+        }
+        // the recommended method frees both tilts wherever it may: nobody asked for this one
+        let lateral = fit.knowledge[TILT_LATERAL] == Knowledge::NotIdentifiable
+            && fit.has_surface
+            && fit.method != Method::Recommended;
+        if lateral && self.options.surface.parameters[TILT_LATERAL].is_free() {
+            warnings.push(
+                "tilt_lateral_deg is held at 0: all directions lie in the plane of incidence, which cannot see it"
+                    .to_string(),
+            );
+        }
+        let unknown = names(&|i| {
+            self.has(i) && i != TILT_LATERAL && fit.knowledge[i] == Knowledge::NotIdentifiable && !self.is_tied(i)
+        });
+        if !unknown.is_empty() {
+            warnings.push(format!("not identifiable from these data, and left empty: {unknown}"));
+        }
+        let prior = names(&|i| self.has(i) && fit.knowledge[i] == Knowledge::PriorOnly);
+        if !prior.is_empty() {
+            warnings.push(format!("the data say nothing beyond the prior, and these are left empty: {prior}"));
+        }
+        let no_freedom = names(&|i| self.has(i) && fit.knowledge[i] == Knowledge::NoDegreesOfFreedom);
+        if !no_freedom.is_empty() {
+            warnings.push(format!("no more independent values than parameters: no standard errors for {no_freedom}"));
+        }
+        for i in (0..NAMES.len()).filter(|&i| fit.at_bound[i] != AtBound::Free) {
+            let value = fit.x[i] * unit(i);
+            warnings.push(format!("{} sits at its bound {value}: the data ask for a value beyond it", NAMES[i]));
+        }
+        if fit.condition > ILL_CONDITIONED && fit.condition.is_finite() {
+            warnings.push(format!(
+                "condition number {:.0e}: some parameters are only known together, see the correlations",
+                fit.condition
+            ));
+        }
+        if let Some(second) = fit.second
+            && second.cost < AMBIGUOUS * fit.cost
+        {
+            let values: Vec<String> = (0..NAMES.len())
+                .filter(|&i| fit.treatments[i].is_free() && (i < 2 || interior(i).is_some()))
+                .map(|i| format!("{} {}", NAMES[i], super::brief(second.x[i] * unit(i))))
+                .collect();
+            warnings.push(format!(
+                "a second minimum is nearly as good (cost {:.3} times the best): {}",
+                second.cost / fit.cost,
+                values.join(", ")
+            ));
+        }
+        let negative = fit.negative_k_lambert();
+        if negative > 0 {
+            warnings.push(format!(
+                "k_l is negative in {negative} of {} bands: the surface alone exceeds the reflectance there",
+                fit.wavelengths_nm.len()
+            ));
+        }
+        let outside = self.selected.wavelengths_nm.iter().filter(|nm| !(**nm >= 400.0 && **nm <= 2500.0)).count();
+        if outside > 0 {
+            warnings
+                .push(format!("{outside} wavelengths outside 400 to 2500 nm, where PROSPECT is known, are left out"));
+        }
+        warnings
+    }
+
+    /// Carotenoids tied to chlorophyll, or dry matter that is prot + cbc: not parameters of their own.
+    fn is_tied(&self, i: usize) -> bool {
+        (i == place(Parameter::Car) && self.fit.car_per_cab.is_some()) || self.split_dry_matter(i)
+    }
+}
