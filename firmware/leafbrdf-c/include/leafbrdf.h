@@ -3,7 +3,8 @@
  *
  * Generated from firmware/leafbrdf-c/src by cbindgen; do not edit. `LEAFBRDF_BLESS=1 cargo test -p leafbrdf-c` makes it anew.
  *
- * - Every function returns an `lb_status`: LB_OK, or what is wrong. On any other status the outputs are not written.
+ * - Functions return an `lb_status`: LB_OK, or what is wrong. On any other status the outputs keep what they held (only
+ *   lb_fit_bands writes every band, each with a status of its own).
  * - No globals, no heap, no locks: every function may be called from any thread or interrupt with its own arguments.
  * - A null pointer gives LB_ERR_NULL. Any other pointer must point to as many values as the function says; outputs and
  *   workspace must not overlap the inputs.

@@ -68,6 +68,7 @@ pub fn instructions(work: impl FnOnce()) -> u64 {
     if per_million == 0 { 0 } else { taken * 1_000_000 / per_million }
 }
 
+#[inline(always)]
 fn stack_pointer() -> usize {
     let pointer: usize;
     // SAFETY: copies a register

@@ -57,6 +57,7 @@ pub fn instructions(work: impl FnOnce()) -> u64 {
     u64::from(retired().wrapping_sub(before))
 }
 
+#[inline(always)]
 fn stack_pointer() -> usize {
     let pointer: usize;
     // SAFETY: copies a register
