@@ -222,7 +222,7 @@ pub(super) fn estimate<'a>(problem: &Problem<'_>, bands: impl Iterator<Item = Ba
     for score in &scores {
         for i in 0..PARAMETERS {
             for k in 0..PARAMETERS {
-                own[i][k] += score[i] * score[k] * seen_directions / rest;
+                own[i][k] += score[i] * score[k];
             }
         }
     }

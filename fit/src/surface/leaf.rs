@@ -98,6 +98,23 @@ impl SurfaceOptions {
         self
     }
 
+    /// Beckmann facets and V-cavities; the convention for K as printed.
+    #[must_use]
+    pub fn with_beckmann(mut self) -> Self {
+        self.facets = FacetKind::Beckmann;
+        self.normalization = Normalization::Bousquet2005;
+        self
+    }
+
+    /// Lambert's diffuse term: no a, no b.
+    #[must_use]
+    pub fn with_lambert(mut self) -> Self {
+        self.diffuse = DiffuseKind::Lambert;
+        self.parameters[DIFFUSE_A] = Treatment::Held(0.0);
+        self.parameters[DIFFUSE_B] = Treatment::Held(0.0);
+        self
+    }
+
     /// The diffuse term P1, with priors a ~ N(0.15, 0.1) and b ~ N(0, 0.1): what 33 leaves of a published campaign have.
     #[must_use]
     pub fn with_p1(mut self) -> Self {
@@ -119,7 +136,11 @@ impl SurfaceOptions {
         self
     }
 
-    fn check(&self) -> Result<(), FitError> {
+    /// Are the bounds a box inside the model's domain? [`fit_surface`] asks before it starts.
+    ///
+    /// # Errors
+    /// [`FitError::Bounds`].
+    pub fn check(&self) -> Result<(), FitError> {
         let limits: [(f64, f64, &str, &str); PARAMETERS] = [
             (1.0001, 100.0, "n", "1.0001 ≤ lower < upper ≤ 100"),
             (1e-4, 10.0, "sigma", "1e-4 ≤ lower < upper ≤ 10"),

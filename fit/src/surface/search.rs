@@ -1,11 +1,12 @@
 //! The global minimum: a scan of the whole box, and a Newton search from every valley that it shows.
 //!
-//! The scan goes through σ × n, and through the tilts where these are free, a and b standing at their prior means: they are smooth
-//! and cannot make a valley of their own. Its cost is a few microseconds a point, whatever the number of bands.
+//! The scan goes through σ × n, and through the tilts where these are free, a and b standing at their prior means. From the
+//! plane of incidence alone, a tilt and b can stand in for the lobe: there the scan goes through b as well. Its cost is a few
+//! microseconds a point, whatever the number of bands.
 
 use leafbrdf_core::Real;
 
-use super::model::{DirectionalModel, N, PARAMETERS, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
+use super::model::{DIFFUSE_B, DirectionalModel, N, PARAMETERS, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
 use super::profile::{Derivatives, Profile};
 use crate::band::profile::{f0_from_n, n_from_f0};
 use crate::bounds::{AtBound, Interval};
@@ -69,7 +70,8 @@ pub struct ScanSize {
     pub sigma: usize,
     /// Values of n, in equal ratios of F₀, both bounds included.
     pub n: usize,
-    /// Values of each tilt, ends (80 % of the bounds) included; odd, so that 0 is among them.
+    /// Values of each tilt, ends (80 % of the bounds) included; odd, so that 0 is among them. Where only one tilt is free, one less
+    /// than twice as many.
     pub tilt: usize,
 }
 
@@ -77,9 +79,14 @@ impl ScanSize {
     /// 20 × 12 × 5 × 5: see `docs/inversion.md` for what it takes to miss a valley.
     pub const DEFAULT: ScanSize = ScanSize { sigma: 20, n: 12, tilt: 5 };
 
-    fn along(self, parameters: &[Treatment<impl Real>; PARAMETERS]) -> [usize; 4] {
-        let of = |place: usize, points: usize| if parameters[place].is_free() { points.max(2) } else { 1 };
-        [of(TILT_IN_PLANE, self.tilt), of(TILT_LATERAL, self.tilt), of(SIGMA, self.sigma), of(N, self.n)]
+    /// Points along t_x, t_y, b, σ, n.
+    fn along(self, parameters: &[Treatment<impl Real>; PARAMETERS]) -> [usize; AXES] {
+        let free = |place: usize| parameters[place].is_free();
+        let of = |place: usize, points: usize| if free(place) { points.max(2) } else { 1 };
+        let both = free(TILT_IN_PLANE) && free(TILT_LATERAL);
+        let tilt = if both { self.tilt } else { 2 * self.tilt.max(2) - 1 };
+        let b = if free(TILT_IN_PLANE) && !both { of(DIFFUSE_B, 3) } else { 1 };
+        [of(TILT_IN_PLANE, tilt), of(TILT_LATERAL, tilt), b, of(SIGMA, self.sigma), of(N, self.n)]
     }
 
     /// Numbers of workspace that the scan takes.
@@ -87,6 +94,10 @@ impl ScanSize {
         self.along(parameters).iter().product()
     }
 }
+
+/// Axes of the scan: t_x, t_y, b, σ, n; n runs fastest.
+const AXES: usize = 5;
+const PLACES: [usize; AXES] = [TILT_IN_PLANE, TILT_LATERAL, DIFFUSE_B, SIGMA, N];
 
 /// The most valleys that are searched, and kept.
 pub const MOST_VALLEYS: usize = 12;
@@ -221,29 +232,50 @@ pub fn search<T: Real, M: DirectionalModel<T>>(
         for (_, index) in chosen.iter().flatten() {
             valleys.add(polish(profile, options, &point(&options.parameters, along, *index)));
         }
+        // and the best of each tilt: with a at its mean the scan may not see a valley there
+        let of_tilt = (along[3] * along[4]).max(1);
+        if grid.len() > of_tilt {
+            for (tilt, costs) in grid.chunks_exact(of_tilt).enumerate() {
+                let lower = |best: (usize, T), (i, cost): (usize, &T)| if *cost < best.1 { (i, *cost) } else { best };
+                let (i, cost) = costs.iter().enumerate().fold((0, T::MAX), lower);
+                let index = tilt * of_tilt + i;
+                if cost < T::MAX && !chosen.iter().flatten().any(|(_, other)| *other == index) {
+                    valleys.add(polish(profile, options, &point(&options.parameters, along, index)));
+                }
+            }
+        }
     }
     valleys
 }
 
-/// Along each axis [t_x, t_y, σ, n], the index of a point of the grid; n runs fastest.
-fn indices(along: [usize; 4], index: usize) -> [usize; 4] {
-    let [_, lateral, sigma, n] = along.map(|points| points.max(1));
-    [index / (n * sigma * lateral), index / (n * sigma) % lateral, index / n % sigma, index % n]
+/// The index along each axis of a point of the grid.
+fn indices(along: [usize; AXES], index: usize) -> [usize; AXES] {
+    let mut rest = index;
+    let mut place = [0; AXES];
+    for (i, points) in place.iter_mut().zip(along).rev() {
+        *i = rest % points.max(1);
+        rest /= points.max(1);
+    }
+    place
 }
 
 /// The parameters at a point of the grid.
-fn point<T: Real>(parameters: &[Treatment<T>; PARAMETERS], along: [usize; 4], index: usize) -> [T; PARAMETERS] {
+fn point<T: Real>(parameters: &[Treatment<T>; PARAMETERS], along: [usize; AXES], index: usize) -> [T; PARAMETERS] {
     let mut x = parameters.map(|one| one.resting());
-    let share = |i: usize, points: usize| T::lit(i as f64) / T::lit((points.max(2) - 1) as f64);
-    for ((place, i), points) in
-        [TILT_IN_PLANE, TILT_LATERAL, SIGMA, N].into_iter().zip(indices(along, index)).zip(along)
-    {
-        let Treatment::Free { bounds, .. } = parameters[place] else { continue };
-        let share = share(i, points);
+    for ((place, i), points) in PLACES.into_iter().zip(indices(along, index)).zip(along) {
+        let Treatment::Free { bounds, prior } = parameters[place] else { continue };
+        if points < 2 {
+            continue;
+        }
+        let share = T::lit(i as f64) / T::lit((points - 1) as f64);
         let between = |lower: T, upper: T| lower + share * (upper - lower);
         x[place] = bounds.clip(match place {
             SIGMA => between(bounds.lower.ln(), bounds.upper.ln()).exp(),
             N => n_from_f0(between(f0_from_n(bounds.lower).ln(), f0_from_n(bounds.upper).ln()).exp())[0],
+            DIFFUSE_B => {
+                let reach = prior.map_or(T::lit(0.15), |prior| T::lit(1.5) * prior.sd);
+                x[place] + between(-reach, reach)
+            }
             _ => between(T::lit(0.8) * bounds.lower, T::lit(0.8) * bounds.upper),
         });
     }
@@ -253,10 +285,10 @@ fn point<T: Real>(parameters: &[Treatment<T>; PARAMETERS], along: [usize; 4], in
 fn scan<T: Real, M: DirectionalModel<T>>(
     profile: &mut Profile<'_, T, M>,
     options: &SearchOptions<T>,
-    along: [usize; 4],
+    along: [usize; AXES],
     grid: &mut [T],
 ) {
-    let [_, _, sigma, n] = along;
+    let [.., sigma, n] = along;
     for (tilt, costs) in grid.chunks_exact_mut((sigma * n).max(1)).enumerate() {
         let first = point(&options.parameters, along, tilt * sigma * n);
         // below the horizon, or outside a domain: no valley there
@@ -275,13 +307,18 @@ fn scan<T: Real, M: DirectionalModel<T>>(
 }
 
 /// Is no neighbour along any axis lower? Of equals, the first counts.
-fn is_valley<T: Real>(grid: &[T], along: [usize; 4], index: usize) -> bool {
+fn is_valley<T: Real>(grid: &[T], along: [usize; AXES], index: usize) -> bool {
     let Some(here) = grid.get(index) else { return false };
     if !(*here < T::MAX) {
         return false;
     }
     let place = indices(along, index);
-    let strides = [along[1] * along[2] * along[3], along[2] * along[3], along[3], 1];
+    let mut strides = [1; AXES];
+    let mut stride = 1;
+    for (one, points) in strides.iter_mut().zip(along).rev() {
+        *one = stride;
+        stride *= points;
+    }
     place.iter().zip(along).zip(strides).all(|((i, points), stride)| {
         let below = *i == 0 || index.checked_sub(stride).and_then(|j| grid.get(j)).is_none_or(|other| *here < *other);
         let above = *i + 1 >= points || grid.get(index + stride).is_none_or(|other| *here <= *other);
