@@ -8,7 +8,6 @@ use leafbrdf_fit::{AtBound, Band, BandBounds, BandFit, BandOptions, Directions, 
 use crate::border::{numbers, slice_mut, workspace as border_workspace};
 use crate::number::{Number, float, number};
 use crate::status::{LB_ERR_BOUNDS, LB_ERR_COUNT, LB_ERR_DATA, LB_ERR_NULL, LB_ERR_TOO_FEW, LB_OK, lb_status};
-use crate::surface::give;
 
 /// Floats in an lb_workspace.
 pub const LB_WORKSPACE_FLOATS: usize = 140;
@@ -185,7 +184,7 @@ pub unsafe extern "C" fn lb_fit_band(
     band: Option<&mut MaybeUninit<lb_band>>,
 ) -> lb_status {
     let (Some(directions), Some(out)) = (directions, band) else { return LB_ERR_NULL };
-    let fit = || {
+    let mut fit = || {
         // SAFETY: the caller's promise about pointers and lengths
         let (shared, brdf, weight, workspace) = unsafe {
             (
@@ -195,9 +194,9 @@ pub unsafe extern "C" fn lb_fit_band(
                 border_workspace(workspace)?,
             )
         };
-        fit_band(shared, Band { brdf, weight }, bounds, workspace)
+        Ok(fit_band(shared, Band { brdf, weight }, bounds, workspace, out))
     };
-    give(out, fit())
+    fit().unwrap_or_else(|status| status)
 }
 
 /// Inverts several wavelengths measured at the same directions, one after the other.
@@ -236,25 +235,27 @@ pub unsafe extern "C" fn lb_fit_bands(
         };
         let mut last = LB_OK;
         for (out, brdf) in bands.iter_mut().zip(brdf.chunks_exact(count.max(1) as usize)) {
-            let band = fit_band(shared, Band { brdf, weight }, bounds, workspace).unwrap_or_else(lb_band::without);
-            if band.status != LB_OK {
-                last = band.status;
+            let status = fit_band(shared, Band { brdf, weight }, bounds, workspace, out);
+            if status != LB_OK {
+                out.write(lb_band::without(status));
+                last = status;
             }
-            out.write(band);
         }
         Ok(last)
     };
     fit().unwrap_or_else(|status| status)
 }
 
-// one copy of the solver for both
+/// Writes to `out` where the status is `LB_OK`: in place, for a copy would cost stack.
+// one copy of the solver for both entry points
 #[inline(never)]
 fn fit_band(
     directions: Directions<'_, Number>,
     band: Band<'_, Number>,
     bounds: Option<&lb_bounds>,
     workspace: &mut Workspace<Number>,
-) -> Result<lb_band, lb_status> {
+    out: &mut MaybeUninit<lb_band>,
+) -> lb_status {
     let mut options = BandOptions::table_3();
     if let Some(bounds) = bounds {
         options.bounds = BandBounds {
@@ -263,14 +264,14 @@ fn fit_band(
             sigma: Interval::new(number(bounds.sigma_lower), number(bounds.sigma_upper)),
         };
     }
-    let fit = device::fit_band(directions, band, &options, workspace).map_err(refused)?.ok_or(LB_ERR_TOO_FEW)?;
-    Ok(lb_band::new(&fit))
-}
-
-/// What the fit refused.
-fn refused(error: FitError) -> lb_status {
-    match error {
-        FitError::Bounds { .. } => LB_ERR_BOUNDS,
-        _ => LB_ERR_DATA,
+    // by reference: a move would copy the report
+    match &device::fit_band(directions, band, &options, workspace) {
+        Ok(Some(fit)) => {
+            out.write(lb_band::new(fit));
+            LB_OK
+        }
+        Ok(None) => LB_ERR_TOO_FEW,
+        Err(FitError::Bounds { .. }) => LB_ERR_BOUNDS,
+        Err(_) => LB_ERR_DATA,
     }
 }
