@@ -63,7 +63,9 @@ impl lb_leaf {
     /// k_L/pi, the diffuse part.
     #[inline(always)]
     pub(crate) fn diffuse(&self) -> Result<Number, lb_status> {
-        if !(0.0..=1.0).contains(&self.k_lambert) {
+        // the bits of numbers from 0 on are in the numbers' order, NaN and negative ones above: one comparison without an FPU
+        let bits = self.k_lambert.to_bits();
+        if bits > 1.0_f32.to_bits() && self.k_lambert != 0.0 {
             return Err(LB_ERR_K_LAMBERT);
         }
         Ok(number(self.k_lambert) * Number::lit(core::f64::consts::FRAC_1_PI))

@@ -126,8 +126,12 @@ fn null_is_a_status_and_never_a_crash() {
 #[test]
 fn what_is_outside_its_domain_is_named_and_nothing_is_written() {
     let outside = |leaf: lb_leaf| degrees(&leaf, 30.0, 40.0, 100.0).unwrap_err();
-    for bad in [-0.1, 1.1, f32::NAN, f32::INFINITY] {
+    for bad in [-0.1, -1e-30, 1.000_000_1, 1.1, f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         assert_eq!(outside(lb_leaf { k_lambert: bad, ..BEECH }), LB_ERR_K_LAMBERT);
+    }
+    // both ends are inside, and a zero is a zero
+    for good in [0.0, -0.0, 1.0] {
+        assert!(degrees(&lb_leaf { k_lambert: good, ..BEECH }, 30.0, 40.0, 100.0).is_ok());
     }
     for bad in [0.9, -1.5, 1.1e4, f32::NAN] {
         assert_eq!(outside(lb_leaf { n: bad, ..BEECH }), LB_ERR_N);
