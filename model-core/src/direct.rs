@@ -42,14 +42,15 @@ impl<T: Real> Pair<T> {
     #[inline(always)]
     fn from_cosines(directions: &DirectionCosines<T>) -> Result<Self, DomainError> {
         let DirectionCosines { cos_theta_s, sin_theta_s, cos_theta_v, sin_theta_v, cos_phi_v } = *directions;
-        let inside = |cos: T, sin: T| cos > T::ZERO && cos <= T::ONE && sin >= T::ZERO && sin <= T::ONE;
+        // 10⁻⁹ is 0.06 µrad above the horizon; from there on no product below leaves the range of f32
+        let inside = |cos: T, sin: T| cos.is_within(1e-9, 1.0) && sin.is_within(0.0, 1.0);
         if !inside(cos_theta_s, sin_theta_s) {
-            return Err(DomainError::new("theta_s", "0 < cos ≤ 1 and 0 ≤ sin ≤ 1"));
+            return Err(DomainError::new("theta_s", "1e-9 ≤ cos ≤ 1 and 0 ≤ sin ≤ 1"));
         }
         if !inside(cos_theta_v, sin_theta_v) {
-            return Err(DomainError::new("theta_v", "0 < cos ≤ 1 and 0 ≤ sin ≤ 1"));
+            return Err(DomainError::new("theta_v", "1e-9 ≤ cos ≤ 1 and 0 ≤ sin ≤ 1"));
         }
-        if !(cos_phi_v.abs() <= T::ONE) {
+        if !cos_phi_v.abs().is_within(0.0, 1.0) {
             return Err(DomainError::new("cos_phi_v", "-1 ≤ cos phi_v ≤ 1"));
         }
         let cos_sum = cos_theta_s + cos_theta_v;
@@ -78,14 +79,15 @@ impl Pair<F32> {
     /// Everything in fractions of the quarter turn until the last step: 1e-9 absolute.
     #[inline(always)]
     fn from_degrees(theta_s: F32, theta_v: F32, phi_v: F32) -> Result<Self, DomainError> {
-        let zenith = |theta: F32| theta.0 >= 0.0 && theta.0 < 90.0;
+        // to the last number below 90
+        let zenith = |theta: F32| theta.is_within(0.0, 89.999_992);
         if !zenith(theta_s) {
             return Err(DomainError::new("theta_s", "0° ≤ theta < 90°"));
         }
         if !zenith(theta_v) {
             return Err(DomainError::new("theta_v", "0° ≤ theta < 90°"));
         }
-        if !(phi_v.0.abs() <= 360.0) {
+        if !phi_v.abs().is_within(0.0, 360.0) {
             return Err(DomainError::new("phi_v", "-360° ≤ phi_v ≤ 360°"));
         }
         let (sin_s, cos_s) = fixed::zenith_sin_cos(theta_s.0);
@@ -113,7 +115,7 @@ impl<T: Real> Surface<T> {
     /// `f32`: within 1e-5 where tan²α/σ² < 14, 2.5e-5 where < 80 (θ to 79°, σ ≥ 0.05).
     ///
     /// # Errors
-    /// [`DomainError`] unless 0 < cosθ ≤ 1, 0 ≤ sinθ ≤ 1 and |cosφ_v| ≤ 1. A sine and a cosine that do not belong
+    /// [`DomainError`] unless 10⁻⁹ ≤ cosθ ≤ 1, 0 ≤ sinθ ≤ 1 and |cosφ_v| ≤ 1. A sine and a cosine that do not belong
     /// together give a meaningless number: [`Geometry::from_cosines`](crate::Geometry::from_cosines) tells.
     ///
     /// ```
@@ -146,9 +148,7 @@ impl<T: Real> Surface<T> {
         let u2 = (g + c).squared();
         let w2 = (n2 * c + g).squared();
         let q = (n2 + T::ONE) * c2 - T::ONE;
-        let product = u2 * w2;
-        // n = 1 at grazing incidence: no surface
-        let inverse = if product > T::ZERO { e / product } else { T::ZERO };
+        let inverse = e / (u2 * w2);
         let twice_f = (w2 * inverse).squared() + (q * u2 * inverse).squared();
 
         //        F exp(−h/(S σ²)) v min(v, edge)           4π/K

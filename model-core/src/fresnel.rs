@@ -73,7 +73,7 @@ impl<T: Real> Dielectric<T> {
     /// [`DomainError`] unless 1 ≤ n ≤ 10⁴.
     #[inline]
     pub fn new(n: T) -> Result<Self, DomainError> {
-        if !(n >= T::ONE && n <= T::lit(1e4)) {
+        if !n.is_within(1.0, 1e4) {
             return Err(DomainError::new("n", N_DOMAIN));
         }
         Ok(Dielectric { n })

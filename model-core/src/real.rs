@@ -21,6 +21,9 @@ pub mod micromath;
 mod portable;
 mod root;
 mod single;
+// a Cortex-M0's arithmetic; tested on the host
+#[cfg(any(test, all(target_arch = "arm", not(target_abi = "eabihf"))))]
+mod soft;
 #[cfg(feature = "std")]
 mod std;
 
@@ -112,6 +115,12 @@ pub trait Real:
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         if self > other { self } else { other }
+    }
+
+    /// `lower` ≤ x ≤ `upper` for two constants, neither negative; false for NaN.
+    #[inline(always)]
+    fn is_within(self, lower: f64, upper: f64) -> bool {
+        self >= Self::lit(lower) && self <= Self::lit(upper)
     }
 
     /// Neither infinite nor NaN.

@@ -172,7 +172,7 @@ impl<T: Real, I: Index<T>, D: Facets<T>, G: Masking<T>> Surface<T, I, D, G> {
     /// # Errors
     /// [`DomainError`] unless 10⁻⁹ ≤ σ ≤ 10³.
     pub fn with_parts(index: I, sigma: T, facets: D, masking: G) -> Result<Self, DomainError> {
-        if !(sigma >= T::lit(1e-9) && sigma <= T::lit(1e3)) {
+        if !sigma.is_within(1e-9, 1e3) {
             return Err(DomainError::new("sigma", "1e-9 ≤ sigma ≤ 1e3"));
         }
         Ok(Surface { index, sigma, normalization: Normalization::default(), facets, masking })

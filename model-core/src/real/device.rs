@@ -7,7 +7,7 @@
 //! | function | largest error, units in the last place | domain |
 //! |---|---|---|
 //! | `sqrt` | 0.5 (correctly rounded) | all |
-//! | `exp` | 1 | all; 0 below 2⁻¹²⁶ |
+//! | `exp` | 1 | all; 0 below 2⁻¹²⁶, infinite above 2¹²⁶ |
 //! | `sin_cos` | 1 | all |
 //! | `tan` | 2.5 | all |
 //! | `asin` | 2.5 | [−1, 1] |
@@ -15,6 +15,8 @@
 
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
+#[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+use super::soft;
 use super::{Real, fixed, root, single};
 
 /// Single precision for devices: small, no `libm`, no `f64`, the same bits everywhere.
@@ -39,21 +41,42 @@ impl Add for F32 {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        F32(self.0 + other.0)
+        #[cfg(not(all(target_arch = "arm", not(target_abi = "eabihf"))))]
+        {
+            F32(self.0 + other.0)
+        }
+        #[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+        {
+            F32(soft::add(self.0, other.0))
+        }
     }
 }
 impl Sub for F32 {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        F32(self.0 - other.0)
+        #[cfg(not(all(target_arch = "arm", not(target_abi = "eabihf"))))]
+        {
+            F32(self.0 - other.0)
+        }
+        #[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+        {
+            F32(soft::add(self.0, -other.0))
+        }
     }
 }
 impl Mul for F32 {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        F32(self.0 * other.0)
+        #[cfg(not(all(target_arch = "arm", not(target_abi = "eabihf"))))]
+        {
+            F32(self.0 * other.0)
+        }
+        #[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+        {
+            F32(soft::mul(self.0, other.0))
+        }
     }
 }
 impl Div for F32 {
@@ -135,5 +158,12 @@ impl Real for F32 {
     #[inline(always)]
     fn abs(self) -> Self {
         F32(self.0.abs())
+    }
+    /// One comparison of integers: positive numbers have the order of their bits, and NaN and what is negative lie above them all.
+    #[inline(always)]
+    fn is_within(self, lower: f64, upper: f64) -> bool {
+        let (least, most) = ((lower as f32).to_bits(), (upper as f32).to_bits());
+        // −0 is 0
+        self.0.to_bits().wrapping_sub(least) <= most.wrapping_sub(least) || (least == 0 && self.0.to_bits() == 1 << 31)
     }
 }

@@ -37,7 +37,7 @@ pub(crate) fn square(value: u32, exponent: i32) -> f32 {
     scaled(mul_high(leading, leading), 2 * (exponent - zeros as i32) + 32)
 }
 
-/// eˣ. Below the smallest normal number: 0.
+/// eˣ. Below 2⁻¹²⁶, the smallest normal number: 0; above 2¹²⁶: infinite.
 #[inline(always)]
 pub(crate) fn exp(x: f32) -> f32 {
     const LOG2_E: u32 = 0xB8AA_3B29; // Q31
@@ -62,19 +62,14 @@ pub(crate) fn exp(x: f32) -> f32 {
     ];
     // 2^(w/16) − 1 = w (A₁ + w (A₂ + w A₃)) on [0, 1), Q36: 1.4e-9
     const A: [u32; 3] = [0xB172_1F54, 0x03D7_CB27, 0x000E_821F];
-    /// ln 2¹²⁸
-    const HIGHEST: u32 = 0x42B1_7218;
+    /// ln 2¹²⁶
+    const FAR: u32 = 0x42AE_AC50;
 
     let bits = x.to_bits();
     let sign = ((bits as i32) >> 31) as u32;
-    if bits & 0x7FFF_FFFF >= HIGHEST {
-        return if x.is_nan() {
-            x
-        } else if sign == 0 {
-            f32::INFINITY
-        } else {
-            0.0
-        };
+    if bits & 0x7FFF_FFFF >= FAR {
+        // infinite, or NaN where x is
+        return if x < 0.0 { 0.0 } else { x + f32::INFINITY };
     }
     // |x| log₂e, Q24 (a subnormal number becomes 0 by the shift)
     let mantissa = (bits << 8) | 0x8000_0000;
@@ -84,9 +79,6 @@ pub(crate) fn exp(x: f32) -> f32 {
     // of 2⁻³² short of it
     let k = ((y >> 24) ^ sign) as i32;
     let f = ((y << 8) | 0x80) ^ sign;
-    if k < -126 {
-        return 0.0;
-    }
     let w = f << 4;
     let series = mul_high(w, A[0] + mul_high(w, A[1] + mul_high(w, A[2])));
     // the index has four bits
