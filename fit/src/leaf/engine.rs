@@ -57,6 +57,8 @@ struct Room {
     dr: Vec<f64>,
     dt: Vec<f64>,
     by_share: Vec<f64>,
+    /// The interior is frozen, and `r` holds its reflectance.
+    frozen: bool,
 }
 
 /// χ² as a function of the coordinates.
@@ -131,6 +133,7 @@ impl<'a> Cost<'a> {
                 dr: vec![0.0; wanted * bands],
                 dt: vec![0.0; wanted * bands],
                 by_share: vec![0.0; bands],
+                frozen: false,
             },
             columns: vec![0.0; (free + 4) * bands],
         }
@@ -172,11 +175,13 @@ impl<'a> Cost<'a> {
             .into_iter()
             .filter(|one| self.is_free(place(*one)) || (held && *one == Parameter::NStruct))
             .collect();
-        let Room { r, t, dr, dt, by_share } = &mut self.room;
+        let Room { r, t, dr, dt, by_share, frozen } = &mut self.room;
         let (dr, dt) = (&mut dr[..wanted.len() * bands], &mut dt[..wanted.len() * bands]);
         let t_alpha = view.t_alpha();
         let mut k = vec![0.0; bands];
         match model.interior {
+            // nothing in it moves: what it was before
+            _ if *frozen && wanted.is_empty() && !held => {}
             Interior::Plain => {
                 let room = Jacobian {
                     reflectance: &mut *r,
@@ -193,6 +198,8 @@ impl<'a> Cost<'a> {
                 r.iter_mut().zip(t_alpha).for_each(|(r, t_alpha)| *r += 1.0 - t_alpha);
             }
         }
+        // a free interior is asked for again at other values
+        *frozen = wanted.is_empty();
         let mut slopes = [const { Vec::new() }; COUNT];
         let mut link = Link { dhrf_specular: 0.0, gain: x[GAIN], offset: x[OFFSET] };
         let mut dhrf = DhrfGradient { value: 0.0, d_n: 0.0, d_sigma: 0.0 };
@@ -246,24 +253,11 @@ impl<'a> Cost<'a> {
         for (direction, measured) in self.measured.brf.chunks_exact(bands.max(1)).enumerate() {
             let Some(whitening) = self.whitening_of.get(direction).and_then(|i| self.whitenings.get(*i)) else { break };
             let (residual, rest) = self.columns.split_at_mut(bands);
-            for (band, (r, y)) in residual.iter_mut().zip(measured).enumerate() {
-                let value = lobes.at(direction, band);
-                *r = y - pi * (diffuse.k[band] * value.diffuse + value.specular);
-            }
+            lobes.residual(direction, &diffuse.k, measured, residual);
             whitening.apply(residual);
             normal.chi2 += residual.iter().map(|r| r * r).sum::<f64>();
             for (column, &i) in rest.chunks_exact_mut(bands).zip(&free) {
-                let slopes = &diffuse.slopes[i];
-                for (band, c) in column.iter_mut().enumerate() {
-                    let value = lobes.at(direction, band);
-                    let own = if i < PARAMETERS {
-                        let scale = lobes.index_scale(i, band);
-                        diffuse.k[band] * value.d_diffuse[i] + scale * value.d_specular[i]
-                    } else {
-                        0.0
-                    };
-                    *c = pi * (own + value.diffuse * slopes.get(band).copied().unwrap_or(0.0));
-                }
+                lobes.column(direction, i, &diffuse, column);
                 whitening.apply(column);
             }
             let columns = rest.get(..free.len() * bands).unwrap_or_default();
@@ -411,6 +405,56 @@ impl Lobes {
             Lobes::None(value) => value,
             Lobes::Shared(values) => &values[direction],
             Lobes::Banded { values, directions, .. } => &values[band * directions + direction],
+        }
+    }
+
+    /// Measured − modelled reflectance of one direction.
+    fn residual(&self, direction: usize, k: &[f64], measured: &[f64], residual: &mut [f64]) {
+        let pi = core::f64::consts::PI;
+        if let Lobes::Banded { .. } = self {
+            for (band, ((r, y), k)) in residual.iter_mut().zip(measured).zip(k).enumerate() {
+                let value = self.at(direction, band);
+                *r = y - pi * (k * value.diffuse + value.specular);
+            }
+            return;
+        }
+        let value = self.at(direction, 0);
+        let (shape, lobe) = (pi * value.diffuse, pi * value.specular);
+        for ((r, y), k) in residual.iter_mut().zip(measured).zip(k) {
+            *r = y - (k * shape + lobe);
+        }
+    }
+
+    /// ∂(modelled reflectance)/∂(parameter i) of one direction.
+    fn column(&self, direction: usize, i: usize, diffuse: &Diffuse, column: &mut [f64]) {
+        let pi = core::f64::consts::PI;
+        if i < PARAMETERS {
+            if let Lobes::Banded { .. } = self {
+                for (band, (c, k)) in column.iter_mut().zip(&diffuse.k).enumerate() {
+                    let value = self.at(direction, band);
+                    *c = pi * (k * value.d_diffuse[i] + self.index_scale(i, band) * value.d_specular[i]);
+                }
+            } else {
+                let value = self.at(direction, 0);
+                let (shape, lobe) = (pi * value.d_diffuse[i], pi * value.d_specular[i]);
+                for (c, k) in column.iter_mut().zip(&diffuse.k) {
+                    *c = k * shape + lobe;
+                }
+            }
+        } else {
+            column.fill(0.0);
+        }
+        // through k_L; empty where it does not depend on this parameter
+        let slopes = &diffuse.slopes[i];
+        if let Lobes::Banded { .. } = self {
+            for (band, (c, slope)) in column.iter_mut().zip(slopes).enumerate() {
+                *c += pi * self.at(direction, band).diffuse * slope;
+            }
+        } else {
+            let shape = pi * self.at(direction, 0).diffuse;
+            for (c, slope) in column.iter_mut().zip(slopes) {
+                *c += shape * slope;
+            }
         }
     }
 

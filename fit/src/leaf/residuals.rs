@@ -35,6 +35,8 @@ pub(super) struct Whitening {
     /// Band by band: how much of the slow part is left since the band before, the filter's gain, and 1/√(innovation variance)
     /// (0 where the band is left out).
     steps: Vec<[f64; 3]>,
+    /// Without a slow part: 1/w of each band.
+    white: Option<Vec<f64>>,
 }
 
 impl Whitening {
@@ -44,7 +46,7 @@ impl Whitening {
         // variance of the slow part, given all bands so far
         let mut variance = slow;
         let mut before: Option<f64> = None;
-        let steps = wavelengths_nm
+        let steps: Vec<[f64; 3]> = wavelengths_nm
             .iter()
             .enumerate()
             .map(|(band, nm)| {
@@ -61,11 +63,19 @@ impl Whitening {
                 [left, gain, 1.0 / innovation.sqrt()]
             })
             .collect();
-        Whitening { steps }
+        let white = (slow == 0.0).then(|| steps.iter().map(|[_, _, inverse]| *inverse).collect());
+        Whitening { steps, white }
     }
 
     /// r ← L⁻¹r; 0 where the band is left out.
     pub fn apply(&self, r: &mut [f64]) {
+        if let Some(white) = &self.white {
+            for (r, inverse) in r.iter_mut().zip(white) {
+                // 0 · NaN would be NaN
+                *r = if *inverse > 0.0 { *r * inverse } else { 0.0 };
+            }
+            return;
+        }
         let mut slow = 0.0;
         for (r, [left, gain, inverse]) in r.iter_mut().zip(&self.steps) {
             slow *= left;
