@@ -1,23 +1,21 @@
 #!/usr/bin/env python3
 """Which recipe reads C_ab, C_w and C_m off directional reflectance best on leaves it has not seen?
 
-The study behind docs/retrieval-study.md, in numpy and sharing nothing with the Rust code: PROSPECT-D (and PRO) with a
+The study behind docs/retrieval-study.md (its directions: direction_study.py), in numpy and sharing nothing with the Rust code: PROSPECT-D (and PRO) with a
 two-layer interior and exact derivatives, a damped Gauss–Newton fit of all leaves at once, and the scores.
 
-    python3 retrieval_study.py recipes    LEAVES          recipes B, A and R: RMSE, bias, r², within species, bootstrap
-    python3 retrieval_study.py constants  LEAVES          pigment share f and N: a table, and chosen leaving a species out
+    python3 retrieval_study.py recipes    LEAVES          recipes B, A, R, S: RMSE, bias, r², within species, bootstrap
+    python3 retrieval_study.py constants  LEAVES          pigment share f, its slope and N: tables, and chosen leaving a species out
     python3 retrieval_study.py variants   LEAVES          what lost, one line each
     python3 retrieval_study.py errors     LEAVES          coverage of the standard errors, with and without held quantities
     python3 retrieval_study.py starts     LEAVES          random starts against the default one
     python3 retrieval_study.py leaf       LEAVES NAME...  parameters of single leaves, to check another implementation
-    python3 retrieval_study.py directions LEAVES OTHERS   surface and diffuse terms: fitted in OTHERS, cross-validated over
-                                                          views, and predicted in OTHERS from the same leaves in LEAVES
+    python3 retrieval_study.py windows    LEAVES          window, residual model and N, chosen leaving a species out
+    python3 retrieval_study.py wavelength LEAVES          a shift of the wavelengths, fitted to pieces of the spectrum
 
 LEAVES  folder of wide CSV files (`# quantity: brf`, φ_v = 180° forward, 400–2500 nm every nm) and chemistry.csv (columns
         leaf, species, cab_ug_cm2, cw_cm, cm_g_cm2)
-OTHERS  folder of further directions; q<leaf>.csv is leaf <leaf> of LEAVES, mounted and measured again
-
-Requirements: Python ≥ 3.9, numpy ≥ 1.24. Seconds for `recipes`, a minute or two for `constants`, `variants` and `directions`.
+Requirements: Python ≥ 3.9, numpy ≥ 1.24. Seconds for `recipes`, minutes for `constants`, `variants` and `windows`.
 OMP_NUM_THREADS=1 keeps it to one core.
 """
 
@@ -139,7 +137,8 @@ class Leaves:
         self.name = [r["leaf"] for r in rows]
         self.species = np.array([r["species"] for r in rows])
         self.true = np.array([[float(r["cab_ug_cm2"]), 1e3 * float(r["cw_cm"]), 1e3 * float(r["cm_g_cm2"])] for r in rows]).T
-        self.value = [read_wide(folder / f"{name}.csv")[1] for name in self.name]
+        files = [read_wide(folder / f"{name}.csv") for name in self.name]
+        self.angle, self.value = [a for a, _ in files], [v for _, v in files]
 
     def mean_of_darkest_views(self, wavelengths, share=0.5):
         """Mean over the half of the views with the least surface reflection (that is, least where the interior is black)."""
@@ -164,6 +163,7 @@ RECIPES = {
     "B": dict(wavelengths=FULL, n_struct=1.4, share=0.5, cov=1e-4 * np.eye(len(FULL))),
     "A": dict(wavelengths=FULL, n_struct=1.5, share=0.65, cov=covariance(FULL)),
     "R": dict(wavelengths=CUT, n_struct=1.5, share=2 / 3, cov=covariance(CUT, 0.01, 100.0, 0.005)),
+    "S": dict(wavelengths=CUT, n_struct=1.5, share=0.7, cov=covariance(CUT, 0.01, 100.0, 0.005), share_slope=0.1),
 }
 
 
@@ -218,14 +218,20 @@ def fit(y, wavelengths, n_struct, share, cov, names=D, additive=(), gains=(), sd
     found.setdefault("cm", found.get("prot", 0) + found.get("cbc", 0))
     posterior = np.linalg.inv(np.matmul(jacobian.transpose(0, 2, 1), jacobian) + np.diag(spread**-2.0))
     estimate = np.array([found[c] * unit for c, unit, _ in SCORED])
-    return dict(found, x=x, cost=cost, posterior=posterior, estimate=estimate, residual=residual)
+    return dict(found, x=x, cost=cost, posterior=posterior, estimate=estimate, share=np.broadcast_to(share, (leaves, 1)))
 
 
 def run(leaves, recipe, views=0.5, shifted=0.0, **changes):
     """A recipe with changes; `shifted`: the instrument's wavelengths are off by so many nm."""
     recipe = dict(RECIPES[recipe], **changes)
+    slope = recipe.pop("share_slope", 0.0)
     y = leaves.mean_of_darkest_views(recipe["wavelengths"] - shifted, views)
-    return fit(y, **recipe)
+    found = fit(y, **recipe)
+    if slope:  # C_m hardly depends on the share, so one more fit settles it
+        sure = np.sqrt(found["posterior"][:, D.index("cm"), D.index("cm")]) < 0.7  # half of the prior's variance
+        share = np.clip(recipe["share"] - slope * np.log(found["cm"] / 0.005), 0.5, 0.8)
+        found = fit(y, **dict(recipe, share=np.where(sure, share, recipe["share"])[:, None]))
+    return found
 
 
 # ----------------------------------------------------------------------------------------------------------- scores
@@ -264,25 +270,67 @@ def recipes(leaves):
     if len(set(leaves.species)) > 3:
         for name, e in error.items():
             print(name, "95 % over species:", over_species(leaves, lambda i, e=e: rmse(e[:, i])))
-        for other in ("A", "B"):
-            print("R −", other, over_species(leaves, lambda i, o=other: rmse(error["R"][:, i]) - rmse(error[o][:, i])))
+        for one, other in (("R", "A"), ("R", "B"), ("S", "R"), ("S", "B")):
+            print(one, "−", other, over_species(leaves, lambda i, p=one, q=other: rmse(error[p][:, i]) - rmse(error[q][:, i])))
+
+
+def left_out(leaves, error, weigh):
+    """Each species scored under the choice that is best on the others; `weigh` turns three RMSE into what is minimised."""
+    chosen, held_out = [], np.zeros_like(leaves.true)
+    for s in sorted(set(leaves.species)):
+        rest = leaves.species != s
+        best = min(error, key=lambda k: weigh(rmse(error[k][:, rest])))
+        chosen.append(best)
+        held_out[:, ~rest] = error[best][:, ~rest]
+    line("chosen on the other species", leaves, leaves.true + held_out)
+    print("chosen:", *chosen, sep="\n  ")
 
 
 def constants(leaves):
-    grid = [(f, n) for f in (0.5, 0.55, 0.6, 0.63, 0.65, 2 / 3, 0.7, 0.73) for n in (1.3, 1.4, 1.5, 1.6)]
     error = {}
-    for f, n in grid:
-        found = run(leaves, "R", share=f, n_struct=n)["estimate"]
-        line(f"f {f:.3f}  N {n}", leaves, found)
-        error[f, n] = found - leaves.true
-    chosen, out = [], np.zeros_like(leaves.true)
-    for s in sorted(set(leaves.species)):
-        rest = leaves.species != s
-        best = min(grid, key=lambda k: (rmse(error[k][:, rest]) / AIMS).mean())
-        chosen.append(best)
-        out[:, ~rest] = error[best][:, ~rest]
-    line("chosen on the other species", leaves, leaves.true + out)
-    print("chosen:", [(round(f, 3), n) for f, n in chosen])
+    for f in (0.5, 0.55, 0.6, 0.63, 0.65, 2 / 3, 0.7, 0.73):
+        for n in (1.3, 1.4, 1.5, 1.6):
+            found = run(leaves, "R", share=f, n_struct=n)["estimate"]
+            line(f"f {f:.3f}  N {n}", leaves, found)
+            error[round(f, 3), n] = found - leaves.true
+    left_out(leaves, error, lambda r: (r / AIMS).mean())
+    error = {}
+    for f in (0.63, 2 / 3, 0.7):
+        for slope in (0.0, 0.05, 0.1, 0.15, 0.2):
+            found = run(leaves, "S", share=f, share_slope=slope)["estimate"]
+            line(f"f {f:.3f} − {slope} ln(C_m/5 mg cm⁻²)", leaves, found)
+            error[round(f, 3), slope] = found - leaves.true
+    left_out(leaves, error, lambda r: r[0])
+
+
+def windows(leaves):
+    """The choices of R other than f, each species scored under the best of the others."""
+    out = {"all": None, "1850–2000": (1850, 2000), "1870–1910": (1870, 1910), "1380–1410, 1870–1900": (1870, 1900)}
+    error = {}
+    for name, gap in out.items():
+        w = np.array([v for v in FULL if gap is None or not gap[0] <= v <= gap[1]])
+        if name.startswith("1380"):
+            w = w[(w < 1380) | (w > 1410)]
+        index = 1 - mean_transmissivity(40, Interior(w, D).n)
+        slope = ((index / index.mean() - 1, 0.01),)
+        for length in (30.0, 60.0, 100.0, 200.0):
+            for nugget in (0.002, 0.005):
+                cov = covariance(w, 0.01, length, nugget)
+                for additive in ((), slope):
+                    for n, f in ((1.4, 0.65), (1.5, 2 / 3)):
+                        found = run(leaves, "R", wavelengths=w, cov=cov, n_struct=n, share=f, additive=additive)["estimate"]
+                        error[name, length, nugget, bool(additive), n] = found - leaves.true
+    print("left out, length (nm), uncorrelated part, offset may follow the index, N")
+    left_out(leaves, error, lambda r: (r / AIMS).mean())
+
+
+def wavelength(leaves):
+    """Where, on the model's scale, the instrument's wavelengths seem to be: pieces of the spectrum, no chemistry."""
+    for low, high in ((410, 800), (800, 1300), (1250, 1700), (1700, 2400), (800, 2400)):
+        w = CUT[(CUT >= low) & (CUT <= high)]
+        found = run(leaves, "R", wavelengths=w, cov=covariance(w, 0.01, 60.0, 0.002), shift_sd=3.0)["x"][:, -1]
+        of_species = [found[leaves.species == s].mean() for s in sorted(set(leaves.species))]
+        print(f"{low}–{high} nm: {found.mean():+.2f} ± {found.std():.2f} nm over leaves; species' means {min(of_species):+.1f} … {max(of_species):+.1f}")
 
 
 def variants(leaves):
@@ -331,12 +379,19 @@ def variants(leaves):
 
 
 def errors(leaves):
+    for recipe in ("R", "S"):
+        print("recipe", recipe)
+        coverage(leaves, recipe)
+
+
+def coverage(leaves, recipe):
     at = [D.index(c) for c, _, _ in SCORED]
-    base = run(leaves, "R")
+    base = run(leaves, recipe)
+    f = RECIPES[recipe]["share"]
     b = np.log(base["estimate"])
-    slope_n = (np.log(run(leaves, "R", n_struct=1.65)["estimate"]) - np.log(run(leaves, "R", n_struct=1.35)["estimate"])) / np.log(1.65 / 1.35)
-    slope_f = (np.log(run(leaves, "R", share=0.70)["estimate"]) - np.log(run(leaves, "R", share=0.63)["estimate"])) / 0.07
-    slope_nm = np.log(run(leaves, "R", shifted=1.0)["estimate"]) - b
+    slope_n = (np.log(run(leaves, recipe, n_struct=1.65)["estimate"]) - np.log(run(leaves, recipe, n_struct=1.35)["estimate"])) / np.log(1.65 / 1.35)
+    slope_f = (np.log(run(leaves, recipe, share=f + 0.02)["estimate"]) - np.log(run(leaves, recipe, share=f - 0.02)["estimate"])) / 0.04
+    slope_nm = np.log(run(leaves, recipe, shifted=1.0)["estimate"]) - b
     for name, s in (("∂ln C/∂ln N", slope_n), ("∂ln C/∂f", slope_f), ("∂ln C per nm", slope_nm)):
         print(name, s.mean(1).round(3), "±", s.std(1).round(3))
     var = base["posterior"][:, at, at].T
@@ -359,166 +414,27 @@ def starts(leaves):
 
 
 def single(leaves, names):
-    found = run(leaves, "R")
-    for name in names:
-        i = leaves.name.index(name)
-        print(name, dict(zip([f"ln {c}" for c in D] + ["b", "ln g"], found["x"][i].round(6).tolist())), "cost", round(float(found["cost"][i]), 5))
-
-
-# ------------------------------------------------------------------------------------------------------- directions
-
-BANDS = np.arange(480, 871, 30)
-EFFECTIVE_BANDS = 5.0  # the residuals of neighbouring bands are nearly the same
-SURFACE = ("n", "ln σ", "a", "b", "t_x", "t_y", "e")
-
-
-def shapes(x, angle, facets="ggx"):
-    """Diffuse shape per k_L and specular term, both as BRF of the tilted leaf against the level panel."""
-    n, sigma, a, b, t_x, t_y, e = x[0], np.exp(x[1]), *x[2:]
-    theta_s, theta_v, phi = angle
-    s = np.stack([np.sin(theta_s), 0 * theta_s, np.cos(theta_s)], -1)
-    v = np.stack([np.sin(theta_v) * np.cos(phi), np.sin(theta_v) * np.sin(phi), np.cos(theta_v)], -1)
-    m = np.array([np.tan(np.deg2rad(t_x)), np.tan(np.deg2rad(t_y)), 1.0])
-    m /= np.linalg.norm(m)
-    c_s, c_v, cos_phase = s @ m, v @ m, (s * v).sum(-1)
-    c_a = np.sqrt((1 + cos_phase) / 2)
-    c_alpha = np.minimum((c_s + c_v) / (2 * c_a), 1)
-    g = np.sqrt(n * n - 1 + c_a**2)
-    fresnel = 0.5 * ((g - c_a) / (g + c_a)) ** 2 * (1 + ((c_a * (g + c_a) - 1) / (c_a * (g - c_a) + 1)) ** 2)
-    if facets == "ggx":
-        q = 1 - (1 - sigma**2) * c_alpha**2
-        w = c_v * np.sqrt(c_s**2 + sigma**2 * (1 - c_s**2)) + c_s * np.sqrt(c_v**2 + sigma**2 * (1 - c_v**2))
-        specular = fresnel * sigma**2 / (np.pi * q**2) / (2 * w)
-    else:
-        masking = np.minimum(1, 2 * c_alpha * np.minimum(c_v, c_s) / c_a)
-        specular = fresnel * masking / (4 * np.pi * c_s * c_v) * np.exp(-(1 / c_alpha**2 - 1) / sigma**2) / (sigma**2 * c_alpha**4)
-    diffuse = (1 - a * c_s * c_v - b * (cos_phase - c_s * c_v) - e * cos_phase**2) / (1 - 2 * a / 3 - e / 2)
-    irradiance = c_s / np.cos(theta_s)
-    return diffuse * irradiance, np.pi * specular * irradiance
-
-
-def lambert(diffuse, specular, y):
-    return diffuse @ (y - specular[:, None]) / (diffuse @ diffuse)
-
-
-def fit_surface(angle, y, free, mean, spread, sd, facets="ggx"):
-    """k_L eliminated in every band; numerical Jacobian; the best of nine starts in (n, σ)."""
-    free = [SURFACE.index(name) for name in free]
-    low, high = np.array([1.05, np.log(0.05), -0.8, -0.8, -12, -12, -0.8]), np.array([3, np.log(1.2), 0.8, 0.8, 12, 12, 0.8])
-    mean, spread = np.array(mean, float), np.array(spread, float)
-
-    def residual(x):
-        diffuse, specular = shapes(x, angle, facets)
-        r = diffuse[:, None] * lambert(diffuse, specular, y) + specular[:, None] - y
-        return np.concatenate([(r / sd * np.sqrt(EFFECTIVE_BANDS / y.shape[1])).ravel(), ((x - mean) / spread)[free]])
-
-    best = None
-    for n0 in (1.2, 1.4, 1.6):
-        for sigma0 in (0.12, 0.25, 0.5):
-            x = mean.copy()
-            x[0], x[1], damping = n0, np.log(sigma0), 1e-2
-            r = residual(x)
-            for _ in range(60):
-                jacobian = np.empty((len(r), len(free)))
-                for j, i in enumerate(free):
-                    plus, minus = x.copy(), x.copy()
-                    plus[i], minus[i] = x[i] + 1e-5, x[i] - 1e-5
-                    jacobian[:, j] = (residual(plus) - residual(minus)) / 2e-5
-                hessian = jacobian.T @ jacobian
-                step = -np.linalg.solve(hessian + damping * np.diag(np.diag(hessian)) + 1e-12 * np.eye(len(free)), jacobian.T @ r)
-                trial = x.copy()
-                trial[free] = np.clip(x[free] + step, low[free], high[free])
-                new = residual(trial)
-                if new @ new < r @ r:
-                    done = r @ r - new @ new < 1e-8 * (r @ r)
-                    x, r, damping = trial, new, max(0.3 * damping, 1e-9)
-                    if done:
-                        break
-                else:
-                    damping *= 5
-                    if damping > 1e8:
-                        break
-            if best is None or r @ r < best[0]:
-                best = (r @ r, x)
-    return best[1]
-
-
-def misfit(x, angle, y, angle_test, y_test, facets="ggx"):
-    """k_L from (angle, y), difference from y_test."""
-    k = lambert(*shapes(x, angle, facets), y)
-    diffuse, specular = shapes(x, angle_test, facets)
-    return diffuse[:, None] * k + specular[:, None] - y_test
-
-
-def directions(principal, hemispherical):
-    far = 1e6  # no prior
-    other, pair = {}, {}
-    for path in sorted(pathlib.Path(hemispherical).glob("q*.csv")):
-        angle, value = read_wide(path)
-        other[path.stem] = (angle, value[:, BANDS - 400])
-        twin = pathlib.Path(principal) / f"{path.stem[1:]}.csv"
-        if twin.exists():
-            angle, value = read_wide(twin)
-            pair[path.stem] = (angle, value[:, BANDS - 400])
-    p1 = ("n", "ln σ", "a", "b", "t_x", "t_y")
-    mean, spread = [1.46, np.log(0.3), 0.15, 0, 0, 0, 0], [far, far, 0.1, 0.1, 3, 3, 0.1]
-    lambertian = [1.46, np.log(0.3), 0, 0, 0, 0, 0]
-    print(f"{len(other)} leaves; RMSE in sr⁻¹, mean (median)")
-    models = (
-        ("Beckmann", ("n", "ln σ"), lambertian, spread, "beckmann"),
-        ("GGX + P1 + tilt", p1, mean, spread, "ggx"),
-        ("GGX + P1 + P2 + tilt", p1 + ("e",), mean, [far, far, 0.2, 0.1, 3, 3, 0.1], "ggx"),
-    )
-    for name, free, centre, width, facets in models:
-        inside, held_out = [], []
-        for angle, y in other.values():
-            x = fit_surface(angle, y, free, centre, width, 0.01, facets)
-            inside.append(np.sqrt((misfit(x, angle, y, angle, y, facets) ** 2).mean()) / np.pi)
-            if facets == "ggx":
-                fold, error = np.random.default_rng(1).permutation(len(y)) % 5, np.empty_like(y)
-                for k in range(5):
-                    train, test = fold != k, fold == k
-                    part, rest = [v[train] for v in angle], [v[test] for v in angle]
-                    x = fit_surface(part, y[train], free, centre, width, 0.01)
-                    error[test] = misfit(x, part, y[train], rest, y[test])
-                held_out.append(np.sqrt((error**2).mean()) / np.pi)
-        text = f"; views held out {np.mean(held_out):.5f} ({np.median(held_out):.5f})" if held_out else ""
-        print(f"  {name:24s} {np.mean(inside):.5f} ({np.median(inside):.5f}){text}", flush=True)
-    print(f"{len(pair)} leaves: 12 views of one mounting predict 41 of another; RMS in BRF, mean (median)")
-    in_plane = ("n", "ln σ", "a", "b", "t_x")
-    for name, free, centre, width, sd, facets, keep in (
-        ("Beckmann", ("n", "ln σ"), lambertian, spread, 0.02, "beckmann", True),
-        ("GGX + P1 + tilt, sd .02", in_plane, mean, spread, 0.02, "ggx", True),
-        ("the same, tilt forgotten", in_plane, mean, spread, 0.02, "ggx", False),
-        ("GGX + P1 + tilt, sd .04", in_plane, mean, spread, 0.04, "ggx", True),
-        ("+ P2, e 0 (.1), sd .04", in_plane + ("e",), mean, spread, 0.04, "ggx", True),
-        ("+ P2, e .1 (.03), sd .04", in_plane + ("e",), mean[:6] + [0.1], spread[:6] + [0.03], 0.04, "ggx", True),
-    ):
-        out = []
-        for leaf, (angle, y) in pair.items():
-            x = fit_surface(angle, y, free, centre, width, sd, facets)
-            k = lambert(*shapes(x, angle, facets), y)
-            if not keep:
-                x[4] = 0.0
-            diffuse, specular = shapes(x, other[leaf][0], facets)
-            out.append(np.sqrt(((diffuse[:, None] * k + specular[:, None] - other[leaf][1]) ** 2).mean()))
-        print(f"  {name:26s} {np.mean(out):.4f} ({np.median(out):.4f})", flush=True)
+    for recipe in ("R", "S"):
+        found = run(leaves, recipe)
+        for name in names:
+            i = leaves.name.index(name)
+            x = dict(zip([f"ln {c}" for c in D] + ["b", "ln g"], found["x"][i].round(6).tolist()))
+            print(recipe, name, x, "cost", round(float(found["cost"][i]), 5), "f", round(float(np.ravel(found["share"])[i]), 6))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("recipes", "constants", "variants", "errors", "starts", "leaf", "directions"))
+    parser.add_argument("what", choices=("recipes", "constants", "windows", "wavelength", "variants", "errors", "starts", "leaf"))
     parser.add_argument("leaves", metavar="LEAVES")
-    parser.add_argument("more", nargs="*", metavar="NAME | OTHERS")
+    parser.add_argument("more", nargs="*", metavar="NAME")
     options = parser.parse_args()
-    if options.what == "directions":
-        if len(options.more) != 1:
-            parser.error("directions needs two folders: LEAVES OTHERS")
-        return directions(options.leaves, options.more[0])
     leaves = Leaves(options.leaves)
     if options.what == "leaf":
         return single(leaves, options.more)
-    {"recipes": recipes, "constants": constants, "variants": variants, "errors": errors, "starts": starts}[options.what](leaves)
+    {
+        "recipes": recipes, "constants": constants, "windows": windows, "wavelength": wavelength,
+        "variants": variants, "errors": errors, "starts": starts,
+    }[options.what](leaves)
 
 
 if __name__ == "__main__":
