@@ -247,8 +247,22 @@ fn facets_have_their_own_convention_unless_another_is_asked_for() {
     };
     assert!(surface(&[]).ends_with("beckmann facets, normalization bousquet2005"));
     assert!(surface(&["--normalization", "cook-torrance"]).ends_with("normalization cook-torrance"));
-    let model = LeafModel::of_preset(&presets()[1]).unwrap();
-    assert!(matches!(model.surface, AnySurface::Beckmann(_)));
+    assert!(surface(&["--facets", "ggx"]).ends_with("ggx facets, normalization cook-torrance"));
+    assert!(surface(&["--facets", "ggx", "--normalization", "bousquet2005"]).ends_with("normalization bousquet2005"));
+}
+
+// F D/(2W) at nadir is F(0)/(4π σ²), and k_L is PROSPECT's reflectance less what GGX facets reflect at normal incidence
+#[test]
+fn a_ggx_leaf_has_a_ggx_lobe_over_its_own_diffuse_part() {
+    let preset = LeafModel::of_preset(&presets()[1]).unwrap();
+    let surface = AnySurface::new(FacetKind::Ggx, 1.5, 0.2, Normalization::CookTorrance).unwrap();
+    let leaf = LeafModel { surface, ..preset };
+    let nadir = Instrument::new(vec![direction(0.0, 0.0, 0.0)]);
+    let at = |model: &LeafModel| model.at(&[670.0]).unwrap();
+    let lobe = noiseless(&leaf, &[670.0], &nadir).values[0] - at(&leaf).k_lambert[0] / PI;
+    assert!((lobe - 0.04 / (4.0 * PI * 0.04)).abs() < 1e-6, "{lobe}");
+    let whole = |model: &LeafModel| at(model).k_lambert[0] + at(model).dhrf_specular;
+    assert!((whole(&leaf) - whole(&preset)).abs() < 1e-14, "the interior is the same");
 }
 
 #[test]

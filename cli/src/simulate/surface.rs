@@ -1,6 +1,8 @@
 //! Surfaces and diffuse terms chosen at run time.
 
-use leafbrdf_core::{Diffuse, DomainError, Geometry, Grade, Illumination, Lambert, Normalization, P1, Surface};
+use leafbrdf_core::{
+    Diffuse, DomainError, Geometry, GgxSurface, Grade, Illumination, Lambert, Normalization, P1, Surface,
+};
 
 /// The facets of a leaf's surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -8,6 +10,8 @@ pub enum FacetKind {
     /// Beckmann facets, V-cavity masking: the paper's (Eqs 7, 9)
     #[default]
     Beckmann,
+    /// GGX facets, Smith masking: a lobe with a tail
+    Ggx,
 }
 
 impl FacetKind {
@@ -15,6 +19,7 @@ impl FacetKind {
     pub fn name(self) -> &'static str {
         match self {
             FacetKind::Beckmann => "beckmann",
+            FacetKind::Ggx => "ggx",
         }
     }
 
@@ -22,6 +27,7 @@ impl FacetKind {
     pub fn usual_normalization(self) -> Normalization {
         match self {
             FacetKind::Beckmann => Normalization::Bousquet2005,
+            FacetKind::Ggx => Normalization::CookTorrance,
         }
     }
 }
@@ -31,6 +37,8 @@ impl FacetKind {
 pub enum AnySurface {
     /// The paper's.
     Beckmann(Surface<f64>),
+    /// GGX–Smith.
+    Ggx(GgxSurface<f64>),
 }
 
 impl AnySurface {
@@ -41,6 +49,7 @@ impl AnySurface {
     pub fn new(kind: FacetKind, n: f64, sigma: f64, normalization: Normalization) -> Result<Self, DomainError> {
         Ok(match kind {
             FacetKind::Beckmann => AnySurface::Beckmann(Surface::new(n, sigma)?.with_normalization(normalization)),
+            FacetKind::Ggx => AnySurface::Ggx(Surface::ggx(n, sigma)?.with_normalization(normalization)),
         })
     }
 
@@ -48,6 +57,7 @@ impl AnySurface {
     pub fn kind(&self) -> FacetKind {
         match self {
             AnySurface::Beckmann(_) => FacetKind::Beckmann,
+            AnySurface::Ggx(_) => FacetKind::Ggx,
         }
     }
 
@@ -55,6 +65,7 @@ impl AnySurface {
     pub fn n(&self) -> f64 {
         match self {
             AnySurface::Beckmann(surface) => surface.index().n(),
+            AnySurface::Ggx(surface) => surface.index().n(),
         }
     }
 
@@ -62,6 +73,7 @@ impl AnySurface {
     pub fn sigma(&self) -> f64 {
         match self {
             AnySurface::Beckmann(surface) => surface.sigma(),
+            AnySurface::Ggx(surface) => surface.sigma(),
         }
     }
 
@@ -69,6 +81,7 @@ impl AnySurface {
     pub fn normalization(&self) -> Normalization {
         match self {
             AnySurface::Beckmann(surface) => surface.normalization(),
+            AnySurface::Ggx(surface) => surface.normalization(),
         }
     }
 
@@ -76,6 +89,7 @@ impl AnySurface {
     pub fn brdf(&self, geometry: &Geometry<f64>) -> f64 {
         match self {
             AnySurface::Beckmann(surface) => surface.brdf(geometry),
+            AnySurface::Ggx(surface) => surface.brdf(geometry),
         }
     }
 
@@ -83,6 +97,7 @@ impl AnySurface {
     pub fn dhrf(&self, source: &Illumination<f64>) -> f64 {
         match self {
             AnySurface::Beckmann(surface) => surface.dhrf(source, Grade::E10),
+            AnySurface::Ggx(surface) => surface.dhrf(source, Grade::E10),
         }
     }
 }
