@@ -41,8 +41,21 @@ pub use colour::scale as colour_scale;
 pub use figures::{Figure, Made, figures_of_leaf, figures_of_leaves};
 pub use results::Results;
 
+use rayon::prelude::*;
+
 use crate::measurement::{Measurement, ReadOptions};
 use crate::output::AtomicFile;
+
+/// Text with sub- and superscripts, for pages that hold figures.
+pub(crate) mod text {
+    pub(crate) use super::svg::{escaped, html, literal, plain};
+
+    /// A figure with nothing on it.
+    #[cfg(test)]
+    pub(crate) fn blank(prefix: &str, title: &str) -> String {
+        super::svg::Svg::new(10.0, 10.0, prefix, title, "nothing").finish()
+    }
+}
 
 /// Folder of the figures inside a leaf's folder.
 pub const FIGURES: &str = "figures";
@@ -82,11 +95,18 @@ pub struct PlotOptions {
     pub measurement: Option<PathBuf>,
     /// How to read it.
     pub read: ReadOptions,
+    /// Names of the figures that are drawn; all without any.
+    pub only: Vec<&'static str>,
 }
 
 impl PlotOptions {
     /// Green, red and near-infrared, as in the paper's Fig. 1, nm.
     pub const WAVELENGTHS_NM: [f64; 3] = [550.0, 670.0, 780.0];
+
+    /// Is a figure of this name asked for?
+    fn wants(&self, name: &str) -> bool {
+        self.only.is_empty() || self.only.contains(&name)
+    }
 
     /// The kinds that this build can write.
     pub fn all_kinds() -> Vec<Kind> {
@@ -101,6 +121,7 @@ impl Default for PlotOptions {
             kinds: Self::all_kinds(),
             measurement: None,
             read: ReadOptions::default(),
+            only: Vec::new(),
         }
     }
 }
@@ -136,60 +157,98 @@ pub fn leaf_folders(folder: &Path) -> Result<Vec<PathBuf>, PlotError> {
     Ok(leaves)
 }
 
-/// Draws every figure of a fit's folder: into `figures` of each leaf's folder, and, for several leaves, of the folder itself.
-///
-/// # Errors
-/// There is no fit in the folder, its files are not what `fit` writes, or the figures cannot be written.
-pub fn plot(folder: &Path, options: &PlotOptions) -> Result<Plotted, PlotError> {
-    let folders = leaf_folders(folder)?;
-    let mut plotted = Plotted::default();
-    let mut leaves = Vec::new();
-    for place in &folders {
-        let results = Results::read(place)?;
-        let measurement = if results.model == "prospect" {
-            None
-        } else {
-            match results.measurement(options.measurement.as_deref(), &options.read) {
-                Ok(measurement) => Some(measurement),
-                Err(why) => {
-                    let sentence = format!("{}: maps, density, cuts and valley are left out: {why}", results.leaf);
-                    plotted.left_out.push(sentence);
-                    None
-                }
-            }
-        };
-        let made = figures_of_leaf(&results, measurement.as_ref(), options)?;
-        write_all(&place.join(FIGURES), &made, options, &mut plotted)?;
-        leaves.push((results, measurement));
-    }
-    if leaves.len() > 1 {
-        let pairs: Vec<(&Results, Option<&Measurement>)> = leaves.iter().map(|(r, m)| (r, m.as_ref())).collect();
-        let made = figures_of_leaves(&pairs)?;
-        write_all(&folder.join(FIGURES), &made, options, &mut plotted)?;
-    }
-    Ok(plotted)
+/// Figures of a fit's folder.
+#[derive(Clone, Debug, Default)]
+pub struct Drawn {
+    /// Each leaf's name and figures, in the order of [`leaf_folders`].
+    pub leaves: Vec<(String, Vec<Figure>)>,
+    /// Figures of several leaves together.
+    pub together: Vec<Figure>,
+    /// Figures that are missing, and why.
+    pub left_out: Vec<String>,
 }
 
-fn write_all(folder: &Path, made: &Made, options: &PlotOptions, plotted: &mut Plotted) -> Result<(), PlotError> {
-    plotted.left_out.extend(made.left_out.iter().cloned());
-    if made.figures.is_empty() {
+/// Draws every figure of a fit's folder.
+///
+/// # Errors
+/// There is no fit in the folder, or its files are not what `fit` writes.
+pub fn draw(folder: &Path, options: &PlotOptions) -> Result<Drawn, PlotError> {
+    let leaves = leaf_folders(folder)?;
+    let one = |place: &PathBuf| -> Result<(Results, Option<Measurement>, Made), PlotError> {
+        let results = Results::read(place)?;
+        let mut measurement = None;
+        let mut missing = None;
+        if results.model != "prospect" {
+            match results.measurement(options.measurement.as_deref(), &options.read) {
+                Ok(found) => measurement = Some(found),
+                Err(why) => {
+                    missing = Some(format!("{}: maps, density, cuts and valley are left out: {why}", results.leaf));
+                }
+            }
+        }
+        let mut made = figures_of_leaf(&results, measurement.as_ref(), options)?;
+        made.left_out.extend(missing);
+        Ok((results, measurement, made))
+    };
+    let made = leaves.par_iter().map(one).collect::<Result<Vec<_>, _>>()?;
+    let mut drawn = Drawn::default();
+    if made.len() > 1 && options.only.is_empty() {
+        let pairs: Vec<(&Results, Option<&Measurement>)> = made.iter().map(|(r, m, _)| (r, m.as_ref())).collect();
+        let together = figures_of_leaves(&pairs)?;
+        drawn.together = together.figures;
+        drawn.left_out = together.left_out;
+    }
+    for (results, _, one) in made {
+        drawn.left_out.extend(one.left_out);
+        drawn.leaves.push((results.leaf, one.figures));
+    }
+    Ok(drawn)
+}
+
+impl Drawn {
+    /// Writes the figures into `figures` of each leaf's folder, and, of several leaves, of the folder itself.
+    ///
+    /// # Errors
+    /// The system's, and PNG in a build without it.
+    pub fn write(&self, folder: &Path, kinds: &[Kind]) -> Result<Vec<PathBuf>, PlotError> {
+        let mut files = Vec::new();
+        for (place, (_, figures)) in leaf_folders(folder)?.iter().zip(&self.leaves) {
+            write_all(&place.join(FIGURES), figures, kinds, &mut files)?;
+        }
+        write_all(&folder.join(FIGURES), &self.together, kinds, &mut files)?;
+        Ok(files)
+    }
+}
+
+/// Draws and writes every figure of a fit's folder.
+///
+/// # Errors
+/// Those of [`draw`] and [`Drawn::write`].
+pub fn plot(folder: &Path, options: &PlotOptions) -> Result<Plotted, PlotError> {
+    let drawn = draw(folder, options)?;
+    Ok(Plotted { files: drawn.write(folder, &options.kinds)?, left_out: drawn.left_out })
+}
+
+fn write_all(folder: &Path, figures: &[Figure], kinds: &[Kind], files: &mut Vec<PathBuf>) -> Result<(), PlotError> {
+    if figures.is_empty() {
         return Ok(());
     }
     let wrong = |path: &Path, error: &io::Error| PlotError(format!("{}: cannot be written: {error}", path.display()));
     fs::create_dir_all(folder).map_err(|error| wrong(folder, &error))?;
-    for figure in &made.figures {
-        for kind in &options.kinds {
-            let path = folder.join(format!("{}.{}", figure.name, kind.extension()));
-            let bytes = kind.render(&figure.svg)?;
-            let write = || {
-                let mut file = AtomicFile::create(&path)?;
-                file.write_all(&bytes)?;
-                file.commit()
-            };
-            write().map_err(|error| wrong(&path, &error))?;
-            plotted.files.push(path);
-        }
-    }
+    let all: Vec<(&Figure, Kind)> =
+        figures.iter().flat_map(|figure| kinds.iter().map(move |kind| (figure, *kind))).collect();
+    let written = all.par_iter().map(|(figure, kind)| {
+        let path = folder.join(format!("{}.{}", figure.name, kind.extension()));
+        let bytes = kind.render(&figure.svg)?;
+        let write = || {
+            let mut file = AtomicFile::create(&path)?;
+            file.write_all(&bytes)?;
+            file.commit()
+        };
+        write().map_err(|error| wrong(&path, &error))?;
+        Ok(path)
+    });
+    files.extend(written.collect::<Result<Vec<_>, PlotError>>()?);
     Ok(())
 }
 

@@ -57,6 +57,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         kinds,
         measurement: arguments.measurement.clone(),
         read: ReadOptions { quantity: arguments.quantity, azimuth: arguments.azimuth },
+        only: Vec::new(),
     };
     let mut out = io::stdout().lock();
     for file in draw(&arguments.folder, &options)? {

@@ -38,6 +38,9 @@ pub fn dhrf(prefix: &str, title: &str, note: &str, table: &Columns) -> Result<St
     let Some(first) = sources.first().filter(|source| source.rows.len() > 1) else {
         return Err("dhrf.csv has fewer than two wavelengths".to_string());
     };
+    if sources.iter().flat_map(|source| &source.rows).all(|row| row[2].is_nan()) {
+        return Err("dhrf.csv has no specular part: these facets have no hemispherical integral yet".to_string());
+    }
     let nm: Vec<f64> = first.rows.iter().map(|row| row[0]).collect();
     let (left, top) = (88.0, 92.0);
     let second = left + WIDTH + LABELS + 96.0;

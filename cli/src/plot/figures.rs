@@ -1,7 +1,7 @@
 //! Which figures a fit has.
 
 use super::hemisphere_map::{Column, Dot, hemisphere_map};
-use super::model::BandModel;
+use super::model::{BandModel, directions};
 use super::principal_plane::{Cut, OUT_OF_PLANE_DEG, principal_plane};
 use super::results::Results;
 use super::svg::literal;
@@ -94,21 +94,21 @@ pub fn figures_of_leaf(
     options: &PlotOptions,
 ) -> Result<Made, PlotError> {
     let mut made = Made::default();
-    if let Some(measurement) = measurement {
+    if let Some(measurement) = measurement.filter(|_| options.wants("hemisphere-wavelengths")) {
         maps(&mut made, results, measurement, options)?;
     }
     let leaf = results.leaf.as_str();
     let shown = literal(leaf);
-    if let Some(bands) = &results.bands {
+    if let Some(bands) = results.bands.as_ref().filter(|_| options.wants("parameters")) {
         let title = format!("{shown}: k_L, n and σ against wavelength");
         let note = format!("shaded: ± one standard error; {}", convention(results));
         let caption = "Lambert coefficient, refractive index and roughness, band by band (as Fig. 4)".to_string();
         made.add(leaf, "parameters", caption, spectra::parameters(&format!("{leaf}-parameters"), &title, &note, bands));
     }
-    if let Some(measurement) = measurement {
+    if let Some(measurement) = measurement.filter(|_| options.wants("density")) {
         density(&mut made, results, measurement)?;
     }
-    if let Some(table) = &results.dhrf {
+    if let Some(table) = results.dhrf.as_ref().filter(|_| options.wants("dhrf")) {
         let title = format!("{shown}: where the reflected light comes from");
         let note = format!("DHRF = k_L + DHRF_{{spec}}(θ_s), Eqs 12–14; {}", convention(results));
         let caption =
@@ -123,7 +123,12 @@ pub fn figures_of_leaf(
         made.add(leaf, "spectrum", caption, svg);
     }
     if let Some(measurement) = measurement {
-        cuts(&mut made, results, measurement)?;
+        if results.model == "leaf" && options.wants("dhrf-zenith") {
+            zenith(&mut made, results, measurement)?;
+        }
+        if options.wants("principal-plane") || options.wants("valley") {
+            cuts(&mut made, results, measurement)?;
+        }
     }
     Ok(made)
 }
@@ -153,7 +158,7 @@ fn maps(made: &mut Made, results: &Results, measurement: &Measurement, options: 
         .collect::<Result<Vec<_>, _>>()?;
     let title = format!("{shown}: BRDF over the hemisphere, θ_s = {widest}°");
     let map = hemisphere_map(&format!("{leaf}-wavelengths"), &title, MAP_NOTE, &columns);
-    let caption = format!("BRDF at θs = {widest}° for chosen wavelengths, measured and modelled (as Fig. 1)");
+    let caption = format!("BRDF at θ_s = {widest}° for chosen wavelengths, measured and modelled (as Fig. 1)");
     made.add(leaf, "hemisphere-wavelengths", caption, map.ok_or_else(|| TOO_FEW.to_string()));
 
     let Some(band) = bands.nearest(RED_NM) else { return Ok(()) };
@@ -194,6 +199,45 @@ fn density(made: &mut Made, results: &Results, measurement: &Measurement) -> Res
     let title = format!("{}: measured against modelled BRDF", literal(leaf));
     let caption = "Measured against modelled BRDF, all bands and directions fitted (as Fig. 4)".to_string();
     made.add(leaf, "density", caption, scatter::scatter(&format!("{leaf}-density"), &title, &pairs));
+    Ok(())
+}
+
+/// DHRF(λ, 0°) of the surface model, k_L being each band's own, and PROSPECT's (Fig. 7).
+fn zenith(made: &mut Made, results: &Results, measurement: &Measurement) -> Result<(), PlotError> {
+    let Some(bands) = &results.bands else { return Ok(()) };
+    let limit = results.max_theta_v_deg(measurement);
+    let brdf = measurement.brdf();
+    let width = measurement.directions.len();
+    let seen: Vec<_> = measurement
+        .directions
+        .iter()
+        .map(|d| directions(d.theta_s_deg, d.theta_v_deg, d.phi_v_deg).filter(|_| d.theta_v_deg <= limit))
+        .collect();
+    let (mut own, mut fitted) = (Vec::new(), Vec::new());
+    for (band, nm) in bands.wavelengths_nm.iter().enumerate() {
+        let model = results.model_at(band)?;
+        let place =
+            measurement.wavelengths_nm.iter().position(|other| other == nm).unwrap_or(measurement.wavelengths_nm.len());
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for (value, seen) in brdf.iter().skip(place * width).zip(&seen) {
+            let Some(seen) = seen else { continue };
+            let [diffuse, specular] = model.surface.parts(seen);
+            if value.is_finite() && diffuse.is_finite() {
+                sum += diffuse * (value - specular);
+                squares += diffuse * diffuse;
+            }
+        }
+        let surface = model.surface.dhrf_at_zenith();
+        own.push(sum / squares + surface);
+        fitted.push(model.k_l + surface);
+    }
+    let leaf = results.leaf.as_str();
+    let version = results.summary.get("prospect").and_then(serde_json::Value::as_str).unwrap_or("");
+    let title = format!("{}: DHRF at normal incidence and PROSPECT-{version}", literal(leaf));
+    let note = "thick: k_L of each band alone + DHRF_{spec}(0°), Eq. 17; difference: surface model − PROSPECT";
+    let caption = format!("DHRF(λ, 0°) of the surface model and its PROSPECT-{version} fit (as Fig. 7)");
+    let svg = spectra::dhrf_at_zenith(&format!("{leaf}-zenith"), &title, note, &bands.wavelengths_nm, own, fitted);
+    made.add(leaf, "dhrf-zenith", caption, svg);
     Ok(())
 }
 

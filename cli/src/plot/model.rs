@@ -1,7 +1,8 @@
 //! The model at one wavelength, as a fit left it: any facets, any diffuse term, any tilt.
 
 use leafbrdf_core::{
-    Angle, Diffuse, DirectionVectors, DomainError, GgxSurface, Lambert, Normalization, P1, Surface, Tilt,
+    Angle, Diffuse, DirectionVectors, DomainError, GgxSurface, Grade, Illumination, Lambert, Normalization, P1,
+    Surface, Tilt,
 };
 use serde_json::Value;
 
@@ -97,6 +98,16 @@ impl LeafSurface {
         };
         // the tilted leaf receives cosθ_s'/cosθ_s of what the level reference does
         [seen.factor() * diffuse, seen.factor() * specular]
+    }
+}
+
+impl LeafSurface {
+    /// DHRF_spec at θ_s = 0; NaN for GGX facets, whose integral is not written out here.
+    pub fn dhrf_at_zenith(&self) -> f64 {
+        match (&self.lobe, Illumination::new(Angle::from_degrees(0.0))) {
+            (Lobe::Beckmann(surface), Ok(zenith)) => surface.dhrf(&zenith, Grade::E6),
+            _ => f64::NAN,
+        }
     }
 }
 

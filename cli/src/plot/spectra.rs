@@ -3,7 +3,7 @@
 use super::axes::{Axis, Frame, Unit};
 use super::results::{Bands, Columns};
 use super::style::{INK, Marker, SMALL_PX, Series, series};
-use super::svg::{Svg, TextStyle};
+use super::svg::{Stroke, Svg, TextStyle};
 
 /// The panels from above: quantity and series.
 const PANELS: [(&str, usize); 3] = [("k_L", 2), ("n", 0), ("σ", 1)];
@@ -111,8 +111,17 @@ pub fn dhrf_at_zenith(
     if nm.len() < 2 {
         return Err("one band makes no spectrum".to_string());
     }
+    if dhrf.iter().all(|value| value.is_nan()) {
+        return Err("these facets have no hemispherical integral yet".to_string());
+    }
     let line = Line { name: "DHRF(λ, 0°)", measured: dhrf, modelled: prospect, series: series(0) };
     Ok(fitted(prefix, title, note, nm, &[line]))
+}
+
+/// A wide line, paler than the series' own, so that a dashed line on top of it is seen.
+fn wide(series: Series) -> Stroke<'static> {
+    let colour = if series.marker == Marker::Disc { "#7db9e0" } else { "#e9a57e" };
+    Stroke { colour, width: 4.0, dash: "" }
 }
 
 fn fitted(prefix: &str, title: &str, note: &str, nm: &[f64], lines: &[Line<'_>]) -> String {
@@ -141,7 +150,7 @@ fn fitted(prefix: &str, title: &str, note: &str, nm: &[f64], lines: &[Line<'_>])
     svg.begin_clip(&frame.outline(1.0));
     let points = |values: &[f64]| -> Vec<[f64; 2]> { nm.iter().zip(values).map(|(nm, v)| [*nm, *v]).collect() };
     for line in lines {
-        frame.line(&mut svg, points(&line.measured), Series { dash: "", ..line.series }.stroke(3.4));
+        frame.line(&mut svg, points(&line.measured), wide(line.series));
         let dashed = Series { colour: INK, dash: "7 5", marker: Marker::Disc };
         frame.line(&mut svg, points(&line.modelled), dashed.stroke(1.5));
     }
@@ -161,12 +170,12 @@ fn fitted(prefix: &str, title: &str, note: &str, nm: &[f64], lines: &[Line<'_>])
     let y = bottom + 72.0;
     let mut x = left;
     for line in lines {
-        svg.line([x, y - 5.0], [x + 34.0, y - 5.0], Series { dash: "", ..line.series }.stroke(3.4));
+        svg.line([x, y - 5.0], [x + 34.0, y - 5.0], wide(line.series));
         let text = if lines.len() > 1 { format!("{}, measured", line.name) } else { "surface model".to_string() };
         svg.text([x + 42.0, y], &text, TextStyle { size: SMALL_PX, ..TextStyle::default() });
         x += 70.0 + 8.2 * text.chars().count() as f64;
     }
-    let dashed = super::svg::Stroke { colour: INK, width: 1.5, dash: "7 5" };
+    let dashed = Stroke { colour: INK, width: 1.5, dash: "7 5" };
     svg.line([x, y - 5.0], [x + 34.0, y - 5.0], dashed);
     svg.text([x + 42.0, y], "PROSPECT", TextStyle { size: SMALL_PX, ..TextStyle::default() });
     svg.text([left, y + 24.0], note, TextStyle { size: SMALL_PX, ..TextStyle::default() });

@@ -293,6 +293,16 @@ pub fn plain(text: &str) -> String {
     pieces(text).into_iter().map(|(_, piece)| piece).collect()
 }
 
+/// The same as HTML: `<sub>` and `<sup>`.
+pub fn html(text: &str) -> String {
+    let piece = |(level, piece): (i8, String)| match level {
+        0 => escaped(&piece),
+        below if below < 0 => format!("<sub>{}</sub>", escaped(&piece)),
+        _ => format!("<sup>{}</sup>", escaped(&piece)),
+    };
+    pieces(text).into_iter().map(piece).collect()
+}
+
 /// A name of the user's, in which `_` and `^` are letters.
 pub fn literal(name: &str) -> String {
     name.replace('\\', "\\\\").replace('_', "\\_").replace('^', "\\^")
