@@ -6,7 +6,7 @@ mod summary;
 use std::io;
 use std::path::Path;
 
-use leafbrdf_core::{Angle, DhrfGradient, Diffuse, DomainError, Grade, Illumination, Normalization, P1, Surface};
+use leafbrdf_core::{Angle, Diffuse, DomainError, Grade, Illumination, Normalization, P1, Surface};
 use leafbrdf_fit::surface::model::{DIFFUSE_A, DIFFUSE_B, N, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
 use leafbrdf_fit::surface::{DiffuseKind, FacetKind, Knowledge, SurfaceData, SurfaceFit, SurfaceOptions, Treatment};
 use leafbrdf_fit::{AtBound, Interval};
@@ -72,8 +72,9 @@ fn dhrf(fit: &SurfaceFit, options: &SurfaceOptions, theta_s_deg: f64) -> Result<
         FacetKind::Beckmann => {
             Surface::new(n, sigma)?.with_normalization(options.normalization).dhrf_with_gradient(&source, Grade::E10)
         }
-        // its hemispherical integral is not there yet: empty cells rather than another surface's
-        FacetKind::Ggx => DhrfGradient { value: f64::NAN, d_n: f64::NAN, d_sigma: f64::NAN },
+        FacetKind::Ggx => {
+            Surface::ggx(n, sigma)?.with_normalization(options.normalization).dhrf_with_gradient(&source, Grade::E10)
+        }
     };
     let diffuse = match options.diffuse {
         DiffuseKind::Lambert => 1.0,
