@@ -1,10 +1,14 @@
-//! One evaluation of the surface model, one with gradient: from angles, from a prepared geometry, and in batches of 4,096.
+//! One evaluation of the surface model, one with gradient: from angles, from a prepared geometry, and in batches of 4,096; the
+//! paper's surface and, beside it, GGX–Smith over P1, level and tilted.
 //! Run with `cargo bench -p leafbrdf-core --bench brdf`; compare ratios within one run.
 
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use leafbrdf_core::{Angle, Dielectric, DirectionTerms, Geometry, Leaf, Normalization, Portable, Real, Surface};
+use leafbrdf_core::{
+    Angle, Dielectric, DirectionTerms, DirectionVectors, Geometry, GgxTerms, Leaf, Normalization, P1, Portable, Real,
+    Surface, Tilt,
+};
 
 const BATCH: usize = 4_096;
 
@@ -31,6 +35,26 @@ fn one<T: Real>(c: &mut Criterion, name: &str) {
     group.bench_function("brdf with gradient", |b| {
         b.iter(|| black_box(&leaf).brdf_with_gradient(black_box(&geometry)));
     });
+
+    // the extended surface beside it
+    let surface = Surface::ggx(T::lit(1.5), T::lit(0.25)).expect("in the domain");
+    let diffuse = P1::new(T::lit(0.15), T::lit(-0.05)).expect("in the domain");
+    let leaf = Leaf::with_diffuse(T::lit(0.3), surface, diffuse).expect("in [0, 1]");
+    group.bench_function("ggx + p1: brdf", |b| b.iter(|| black_box(&leaf).brdf(black_box(&geometry))));
+    group.bench_function("ggx + p1: brdf with gradient", |b| {
+        b.iter(|| black_box(&leaf).brdf_with_gradient(black_box(&geometry)));
+    });
+    let vectors = DirectionVectors::from_angles(deg(40.0), deg(30.0), deg(170.0)).expect("above the horizon");
+    let tilt = Tilt::new(deg(3.0), deg(-2.0)).expect("in the domain");
+    group.bench_function("ggx + p1: tilt and brdf", |b| {
+        b.iter(|| black_box(&vectors).about(black_box(&tilt)).map(|tilted| black_box(&leaf).brdf_tilted(&tilted)));
+    });
+    group.bench_function("ggx + p1: tilt and brdf with gradient", |b| {
+        b.iter(|| {
+            let tilted = black_box(&vectors).about(black_box(&tilt));
+            tilted.map(|tilted| black_box(&leaf).brdf_tilted_with_gradient(&tilted))
+        });
+    });
 }
 
 fn batch<T: Real>(c: &mut Criterion, name: &str) {
@@ -50,6 +74,15 @@ fn batch<T: Real>(c: &mut Criterion, name: &str) {
             let [cos_theta_a, tan2_alpha, weight] = black_box(&columns);
             for (((out, c), t), w) in out.iter_mut().zip(cos_theta_a).zip(tan2_alpha).zip(weight) {
                 let terms = DirectionTerms { cos_theta_a: *c, tan2_alpha: *t, weight: *w };
+                *out = terms.brdf(index, T::lit(0.29));
+            }
+        });
+    });
+    let ggx: Vec<GgxTerms<T>> =
+        geometries::<T>().iter().map(|g| GgxTerms::new(g, Normalization::CookTorrance)).collect();
+    group.bench_function("ggx from direction terms", |b| {
+        b.iter(|| {
+            for (out, terms) in out.iter_mut().zip(black_box(&ggx)) {
                 *out = terms.brdf(index, T::lit(0.29));
             }
         });

@@ -1,4 +1,5 @@
-//! One DHRF_spec: each grade, value and gradient, at a smooth surface (Gauss–Hermite) and at beech's and a rough one's cost.
+//! One DHRF_spec: each grade, value and gradient, at a smooth surface (Gauss–Hermite) and at beech's and a rough one's cost;
+//! GGX beside it.
 
 use std::hint::black_box;
 
@@ -19,6 +20,12 @@ fn grades(c: &mut Criterion) {
         let index = Dielectric::new(n).unwrap();
         group.bench_function("E4d/f64/gradient", |b| {
             b.iter(|| illumination.dhrf_with_gradient(black_box(index), black_box(sigma), Grade::E4d));
+        });
+        group.bench_function("E4d/f64/ggx", |b| {
+            b.iter(|| illumination.dhrf_ggx(black_box(index), black_box(sigma), Grade::E4d));
+        });
+        group.bench_function("E4d/f64/ggx gradient", |b| {
+            b.iter(|| illumination.dhrf_ggx_with_gradient(black_box(index), black_box(sigma), Grade::E4d));
         });
         let index = Absorbing::new(n, 0.5).unwrap();
         group.bench_function("E4d/f64/complex-index", |b| {
