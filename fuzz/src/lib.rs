@@ -6,6 +6,7 @@
 
 mod bands;
 mod dhrf;
+mod extended;
 mod gradient;
 mod input;
 mod mirror;
@@ -14,6 +15,7 @@ mod surface;
 
 pub use bands::bands;
 pub use dhrf::dhrf;
+pub use extended::extended;
 pub use gradient::gradient;
 pub use input::Input;
 pub(crate) use mirror::Mirror;
@@ -30,6 +32,7 @@ pub const TARGETS: &[(&str, Target)] = &[
     ("surface_complex", surface_complex),
     ("gradient", gradient),
     ("dhrf", dhrf),
+    ("extended", extended),
     ("bands", bands),
     ("readers", readers),
 ];
