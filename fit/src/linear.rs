@@ -3,7 +3,7 @@
 use leafbrdf_core::Real;
 
 /// The lower factor L of A = L Lᵀ, with 1/L_ii on the diagonal; `None` unless A is positive definite.
-#[inline(always)]
+#[cfg_attr(feature = "std", inline(always))]
 fn factor<T: Real, const P: usize>(a: &[[T; P]; P]) -> Option<[[T; P]; P]> {
     let mut l = *a;
     for j in 0..P {
@@ -29,7 +29,7 @@ fn factor<T: Real, const P: usize>(a: &[[T; P]; P]) -> Option<[[T; P]; P]> {
 }
 
 /// A⁻¹b, or `None` unless A is positive definite.
-#[inline(always)]
+#[cfg_attr(feature = "std", inline(always))]
 pub fn solve_spd<T: Real, const P: usize>(a: &[[T; P]; P], b: &[T; P]) -> Option<[T; P]> {
     let l = factor(a)?;
     let mut x = *b;
@@ -51,7 +51,7 @@ pub fn solve_spd<T: Real, const P: usize>(a: &[[T; P]; P], b: &[T; P]) -> Option
 }
 
 /// A⁻¹, or `None` unless A is positive definite.
-#[inline(always)]
+#[cfg_attr(feature = "std", inline(always))]
 pub fn invert_spd<T: Real, const P: usize>(a: &[[T; P]; P]) -> Option<[[T; P]; P]> {
     let mut inverse = [[T::ZERO; P]; P];
     for j in 0..P {

@@ -79,7 +79,7 @@ const BOUND_MARGIN: f64 = 1e-5;
 /// Minimises `objective` over the box from `start` (from a point just inside, where it touches a bound or lies beyond).
 ///
 /// The model is never evaluated outside the bounds, and the cost returned is never above that of the start.
-#[inline(always)]
+#[cfg_attr(feature = "std", inline(always))]
 pub fn minimize<T: Real, const P: usize, O: Objective<T, P>>(
     objective: &mut O,
     bounds: &[Interval<T>; P],
@@ -157,7 +157,7 @@ fn distances<T: Real, const P: usize>(x: &[T; P], gradient: &[T; P], bounds: &[I
 
 /// The damped step, with blocked parameters on the way to their bounds; `None` where even a strongly damped M is not positive
 /// definite (nothing finite is left).
-#[inline(always)]
+#[cfg_attr(feature = "std", inline(always))]
 fn propose<T: Real, const P: usize>(
     here: &Evaluation<T, P>,
     x: &[T; P],
@@ -183,7 +183,7 @@ fn propose<T: Real, const P: usize>(
 
 /// −M⁻¹g inside the box: while a parameter's step would leave it, the one that leaves it first (as a share of its step) is
 /// sent 99.5 % of the way to its bound, and the rest is solved for again.
-#[inline(always)]
+#[cfg_attr(feature = "std", inline(always))]
 fn solve_inside<T: Real, const P: usize>(
     m: &[[T; P]; P],
     gradient: &[T; P],
@@ -231,7 +231,7 @@ fn solve_inside<T: Real, const P: usize>(
 }
 
 /// The step cut to the longest allowed one, and the point it leads to.
-#[inline(always)]
+#[cfg_attr(feature = "std", inline(always))]
 fn shorten<T: Real, const P: usize>(
     x: &[T; P],
     step: &[T; P],
@@ -250,7 +250,7 @@ fn shorten<T: Real, const P: usize>(
 }
 
 /// −(gᵀs + ½ sᵀHs), with the Hessian that made the step where it is convex along it.
-#[inline(always)]
+#[cfg_attr(feature = "std", inline(always))]
 fn predicted_decrease<T: Real, const P: usize>(here: &Evaluation<T, P>, step: &[T; P]) -> T {
     let mut slope = T::ZERO;
     let mut exact = T::ZERO;
@@ -272,7 +272,7 @@ fn largest_abs<T: Real, const P: usize>(values: &[T; P]) -> T {
 }
 
 /// Parameters that the search has driven to within a hair of a bound are set on it, if the cost agrees.
-#[inline(always)]
+#[cfg_attr(feature = "std", inline(always))]
 fn settle<T: Real, const P: usize, O: Objective<T, P>>(
     objective: &mut O,
     bounds: &[Interval<T>; P],

@@ -72,6 +72,11 @@ pub trait Real:
     fn lit(x: f64) -> Self;
     /// The same number in double precision (exact for `f32`).
     fn to_f64(self) -> f64;
+    /// The whole part of a number that is not negative; 0 for NaN and below 0.
+    #[inline(always)]
+    fn to_usize(self) -> usize {
+        self.to_f64() as usize
+    }
     /// √x; NaN for x < 0.
     fn sqrt(self) -> Self;
     /// eˣ.

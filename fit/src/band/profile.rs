@@ -13,7 +13,7 @@ pub(crate) fn f0_from_n<T: Real>(n: T) -> T {
 }
 
 /// n = (1 + √F₀)/(1 − √F₀), with dn/dF₀ and d²n/dF₀².
-#[inline(always)]
+#[cfg_attr(feature = "std", inline(always))]
 pub(crate) fn n_from_f0<T: Real>(f0: T) -> [T; 3] {
     let rho = f0.sqrt();
     let rest = T::ONE - rho;
@@ -96,6 +96,13 @@ fn accumulate<T: Real, const L: usize>(
     Sums { d, d_d, s: [s0, s1], d_s: [ds0, ds1], s_s: [ss0, ss1, ss2], c: [c0, c1, c2], d_c: [dc0, dc1, dc2] }
 }
 
+/// The pass on one lane, for devices: one copy in flash, whoever calls. With more lanes it is part of a kernel that is built for one
+/// processor, and must be compiled with it.
+#[inline(never)]
+fn accumulate_once<T: Real>(directions: Directions<T>, band: Band<T>, n: Dielectric<T>, sigma: T, a: T) -> Sums<T> {
+    accumulate::<T, 1>(directions, band, n, sigma, a)
+}
+
 /// Everything at one (n, σ): χ² with k_L at its best, and the derivatives with respect to n and σ.
 #[derive(Clone, Copy)]
 pub(super) struct Point<T> {
@@ -124,7 +131,7 @@ pub(super) struct Profile<'a, T, const L: usize> {
 
 impl<T: Real, const L: usize> Profile<'_, T, L> {
     /// The box in (ln F₀, ln σ).
-    #[inline(always)]
+    #[cfg_attr(feature = "std", inline(always))]
     pub fn box_of(bounds: &BandBounds<T>) -> [Interval<T>; 2] {
         [
             Interval::new(f0_from_n(bounds.n.lower).ln(), f0_from_n(bounds.n.upper).ln()),
@@ -133,14 +140,18 @@ impl<T: Real, const L: usize> Profile<'_, T, L> {
     }
 
     /// χ² at (n, σ) with the best k_L inside its bounds.
-    #[inline(always)]
+    #[cfg_attr(feature = "std", inline(always))]
     pub fn at(&mut self, n: T, sigma: T) -> Point<T> {
         // the solver's bounds keep n in the domain
         let index = match Dielectric::new(n) {
             Ok(index) => index,
             Err(_) => return Point::nowhere(),
         };
-        let sums = accumulate::<T, L>(self.directions, self.band, index, sigma, self.a);
+        let sums = if L == 1 {
+            accumulate_once(self.directions, self.band, index, sigma, self.a)
+        } else {
+            accumulate::<T, L>(self.directions, self.band, index, sigma, self.a)
+        };
         let inv_weight = T::ONE / self.total_weight;
         let k_bounds = self.bounds.k_lambert;
         let inv_pi = T::lit(core::f64::consts::FRAC_1_PI);
@@ -193,7 +204,7 @@ impl<T: Real> Point<T> {
 }
 
 impl<T: Real, const L: usize> Objective<T, 2> for Profile<'_, T, L> {
-    #[inline(always)]
+    #[cfg_attr(feature = "std", inline(always))]
     fn evaluate(&mut self, x: &[T; 2]) -> Evaluation<T, 2> {
         let f0 = x[0].exp();
         let [n, slope, curvature] = n_from_f0(f0);

@@ -90,7 +90,8 @@ impl<T: Real> BandFit<T> {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(feature = "std", inline(always))]
+    #[cfg_attr(not(feature = "std"), inline(never))]
     pub(super) fn new(
         best: &Candidate<T>,
         total_weight: T,
@@ -164,7 +165,7 @@ impl<T: Real> BandFit<T> {
 
 /// The inverse of the normal matrix. Where it is singular, n and σ (the lobe) are taken out one after the other, σ first: they
 /// are marked, and the rest keeps its errors.
-#[inline(always)]
+#[cfg_attr(feature = "std", inline(always))]
 fn covariance<T: Real>(normal: &[[T; 3]; 3], free: &[bool; 3]) -> ([[T; 3]; 3], [bool; 3]) {
     let mut matrix = *normal;
     let mut singular = [false; 3];
@@ -185,7 +186,8 @@ fn covariance<T: Real>(normal: &[[T; 3]; 3], free: &[bool; 3]) -> ([[T; 3]; 3], 
 }
 
 /// A⁻¹ by way of the matrix of unit diagonal, so that the units of k_L, n and σ do not decide what counts as singular.
-#[inline(always)]
+#[cfg_attr(feature = "std", inline(always))]
+#[cfg_attr(not(feature = "std"), inline(never))]
 fn scaled_inverse<T: Real>(a: &[[T; 3]; 3]) -> Option<[[T; 3]; 3]> {
     let mut scale = [T::ONE; 3];
     for i in 0..3 {

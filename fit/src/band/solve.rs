@@ -84,7 +84,7 @@ impl<'a, T: Real, const L: usize> BandSolver<'a, T, L> {
     ///
     /// # Errors
     /// [`FitError`] for values or weights that are not finite, negative weights, or slices of the wrong length.
-    #[inline(always)]
+    #[cfg_attr(feature = "std", inline(always))]
     pub fn fit(&mut self, band: Band<T>, starts: &[Start<T>]) -> Result<Option<BandFit<T>>, FitError> {
         band.check(self.directions.len())?;
         let (total_weight, n_obs) = count(&band);
@@ -103,7 +103,7 @@ impl<'a, T: Real, const L: usize> BandSolver<'a, T, L> {
     }
 
     /// Searches from each start and reports the best minimum.
-    #[inline(always)]
+    #[cfg_attr(feature = "std", inline(always))]
     fn polish_all(
         &self,
         band: Band<T>,
@@ -141,7 +141,7 @@ impl<'a, T: Real, const L: usize> BandSolver<'a, T, L> {
     }
 
     /// One Newton search.
-    #[inline(always)]
+    #[cfg_attr(feature = "std", inline(always))]
     fn polish(&self, band: Band<T>, total_weight: T, start: Start<T>) -> Candidate<T> {
         let bounds = self.options.bounds;
         let boxed = Profile::<T, L>::box_of(&bounds);
@@ -188,7 +188,7 @@ impl<'a, T: Real, const L: usize> BandSolver<'a, T, L> {
 /// the parameters from a tenth of their errors to a hundredth at no cost, for the last point is looked at once more anyway.
 ///
 /// Inside the box and of a parameter that is free only; in double precision the step is below what anyone reads.
-#[inline(always)]
+#[cfg_attr(feature = "std", inline(always))]
 fn last_step<T: Real>(minimum: &Minimum<T, 2>, boxed: &[Interval<T>; 2], tolerance: T) -> [T; 2] {
     let x = minimum.x;
     let free = minimum.at_bound.iter().all(|at| *at == AtBound::Free);
@@ -202,7 +202,7 @@ fn last_step<T: Real>(minimum: &Minimum<T, 2>, boxed: &[Interval<T>; 2], toleran
 }
 
 /// Σ ω and the number of values with ω > 0.
-#[inline(always)]
+#[cfg_attr(feature = "std", inline(always))]
 fn count<T: Real>(band: &Band<T>) -> (T, usize) {
     let mut total = T::ZERO;
     let mut n_obs = 0;

@@ -98,7 +98,7 @@ impl<T: Real> Workspace<T> {
     }
 
     /// One pass over the directions. Returns Σ ω (y − mean)².
-    #[inline(always)]
+    #[inline(never)]
     fn accumulate(&mut self, directions: Directions<'_, T>, band: Band<'_, T>, mean: T, ladder: &Ladder<T>) -> T {
         self.rungs.fill(Sums::ZERO);
         let (Ok(first), Ok(second)) = (Dielectric::new(T::lit(BASIS[0])), Dielectric::new(T::lit(BASIS[1]))) else {
@@ -221,6 +221,7 @@ struct Best<T> {
 
 impl<T: Real> Costs<'_, T> {
     /// The valleys along σ of min over n.
+    #[inline(never)]
     fn valleys(&self, ladder: &Ladder<T>, bounds: &BandBounds<T>) -> ([Start<T>; STARTS], usize) {
         let none = Best { cost: T::MAX, k: 0, sides: (T::MAX, T::MAX) };
         let mut starts = [Start { n: T::ONE, sigma: T::ONE }; STARTS];

@@ -218,6 +218,7 @@ pub(super) fn walk_with<T: Real>(
 #[inline(always)]
 fn order_of<T: Real>(v: T, largest: usize) -> usize {
     // the cast saturates; NaN gives 0
-    let order = (v + T::lit(0.9999)).to_f64() as usize;
-    order.clamp(1, largest)
+    let order = (v + T::lit(0.9999)).to_usize();
+    // not `clamp`, which panics where it does not know that largest ≥ 1
+    order.min(largest).max(1)
 }

@@ -219,6 +219,6 @@ fn excess_roughness<T: Real>(sigma: T) -> T {
 #[inline(always)]
 fn order_of<T: Real>(v: T, largest: usize) -> usize {
     // the cast saturates; NaN gives 0
-    let order = (v + T::lit(0.9999)).to_f64() as usize;
+    let order = (v + T::lit(0.9999)).to_usize();
     order.clamp(1, largest)
 }

@@ -130,6 +130,10 @@ impl Real for F32 {
         f64::from(self.0)
     }
     #[inline(always)]
+    fn to_usize(self) -> usize {
+        self.0 as usize
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         F32(root::sqrt(self.0))
     }
