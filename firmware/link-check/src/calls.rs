@@ -3,8 +3,8 @@
 use core::hint::black_box;
 
 use leafbrdf_core::{
-    Absorbing, Angle, Dielectric, DirectionCosines, DirectionTerms, DomainError, Geometry, Grade, Illumination, Index,
-    Leaf, Normalization, Portable, Real, Surface,
+    Absorbing, Angle, Dielectric, DirectionCosines, DirectionTerms, DirectionVectors, DomainError, Geometry, GgxTerms,
+    Grade, Illumination, Index, Leaf, Normalization, P1, Portable, Real, Surface, Tilt,
 };
 use leafbrdf_fit::band::scan::{GridSize, Scan, ScanTable};
 use leafbrdf_fit::{Band, BandOptions, BandSolver, Directions};
@@ -31,7 +31,7 @@ pub fn double(print: &mut Print<'_>) {
 }
 
 fn all<T: Real>(print: &mut Print<'_>) {
-    if let Err(error) = surface::<T>(print).and_then(|()| hemisphere::<T>(print)) {
+    if let Err(error) = surface::<T>(print).and_then(|()| extended::<T>(print)).and_then(|()| hemisphere::<T>(print)) {
         print("error", 0);
         print(error.parameter, 0);
         print(error.expected, 0);
@@ -87,6 +87,39 @@ fn surface<T: Real>(print: &mut Print<'_>) -> Result<(), DomainError> {
     show("d_n", gradient.d_n);
     show("d_sigma", gradient.d_sigma);
     show("brf", Leaf::new(input(0.45), rough)?.brf(&table));
+    Ok(())
+}
+
+/// GGX facets over a P1 interior, level and tilted, with every derivative.
+fn extended<T: Real>(print: &mut Print<'_>) -> Result<(), DomainError> {
+    let mut show = |name: &str, value: T| print(name, value.to_f64().to_bits());
+    let angle = |degrees: f64| Angle::<T>::from_degrees(input(degrees));
+
+    let surface = Surface::ggx(input::<T>(1.5), input(0.25))?;
+    let leaf = Leaf::with_diffuse(input(0.45), surface, P1::new(input(0.15), input(-0.05))?)?;
+    let level = Geometry::from_angles(angle(45.0), angle(30.0), angle(150.0))?;
+    show("ggx", leaf.brdf(&level));
+    let terms = GgxTerms::new(&level, Normalization::CookTorrance);
+    let gradient = terms.brdf_with_gradient(surface.index(), surface.sigma());
+    show("ggx_d_n", gradient.d_n);
+    show("ggx_d_sigma", gradient.d_sigma);
+
+    let vectors = DirectionVectors::from_angles(angle(45.0), angle(30.0), angle(150.0))?;
+    let tilted = vectors.about(&Tilt::new(angle(3.0), angle(-2.0))?)?;
+    let gradient = leaf.brdf_tilted_with_gradient(&tilted);
+    show("tilted", gradient.value);
+    show("tilted_d_a", gradient.d_a);
+    show("tilted_d_b", gradient.d_b);
+    show("tilted_d_in_plane", gradient.d_in_plane);
+    show("tilted_d_lateral", gradient.d_lateral);
+
+    let illumination = Illumination::new(angle(40.0))?;
+    show("ggx_dhrf_e10", surface.dhrf(&illumination, Grade::E10));
+    let gradient = surface.dhrf_with_gradient(&illumination, black_box(Grade::E4d));
+    show("ggx_dhrf", gradient.value);
+    show("ggx_dhrf_d_n", gradient.d_n);
+    show("ggx_dhrf_d_sigma", gradient.d_sigma);
+    print("ggx_evaluations", illumination.evaluations_ggx(surface.sigma(), Grade::E4d) as u64);
     Ok(())
 }
 
