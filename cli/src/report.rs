@@ -62,6 +62,8 @@ pub struct Table {
     pub rows: Vec<Vec<String>>,
     /// What to know before using the numbers.
     pub note: String,
+    /// Its cells are sentences rather than numbers.
+    pub prose: bool,
 }
 
 impl Page {
@@ -150,8 +152,12 @@ pub fn write(folder: &Path, study: &Study) -> Result<PathBuf, PlotError> {
 
 impl Table {
     fn html(&self, body: &mut String) {
-        let _ =
-            writeln!(body, "<div class=\"wide\" tabindex=\"0\">\n<table>\n<caption>{}</caption>", html(&self.caption));
+        let _ = writeln!(
+            body,
+            "<div class=\"wide\" tabindex=\"0\">\n<table{}>\n<caption>{}</caption>",
+            if self.prose { " class=\"prose\"" } else { "" },
+            html(&self.caption)
+        );
         body.push_str("<thead><tr>");
         for column in &self.columns {
             let _ = write!(body, "<th scope=\"col\">{}</th>", html(column));
@@ -162,8 +168,7 @@ impl Table {
             for (place, cell) in row.iter().enumerate() {
                 let _ = match place {
                     0 => write!(body, "<th scope=\"row\">{}</th>", html(cell)),
-                    _ if is_number(cell) => write!(body, "<td>{}</td>", html(cell)),
-                    _ => write!(body, "<td class=\"words\">{}</td>", html(cell)),
+                    _ => write!(body, "<td>{}</td>", html(cell)),
                 };
             }
             body.push_str("</tr>\n");
@@ -173,11 +178,6 @@ impl Table {
             let _ = writeln!(body, "<p class=\"note\">{}</p>", html(&self.note));
         }
     }
-}
-
-/// Does a cell begin as a number does?
-fn is_number(cell: &str) -> bool {
-    cell.trim_start_matches(['−', '-', '≥', '<', ' ', '×']).starts_with(|c: char| c.is_ascii_digit()) || cell == "–"
 }
 
 /// A figure whose ids do not meet those of another on the page.
@@ -210,6 +210,7 @@ mod tests {
             columns: vec!["leaf".into(), "n (unitless)".into()],
             rows: vec![vec!["<beech>".into(), "1.56 ± 0.01".into()]],
             note: "a note".into(),
+            prose: false,
         };
         Page {
             title: "A study & more".into(),

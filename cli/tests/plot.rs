@@ -184,3 +184,21 @@ fn hemispherical_spectra_are_drawn_with_the_prospect_fit() {
     assert_eq!(figures.len(), 1);
     assert!(figures[0].1.contains("transmittance, measured"));
 }
+
+#[test]
+fn the_demo_collects_itself_in_one_page_without_a_network() {
+    let folder = tempfile::tempdir().unwrap();
+    let printed = succeed(&["demo", "-o", folder.path().to_str().unwrap()]);
+    let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    let options = roxmltree::ParsingOptions { allow_dtd: true, ..roxmltree::ParsingOptions::default() };
+    let document = roxmltree::Document::parse_with_options(&page, options).unwrap();
+    let count = |name: &str| document.descendants().filter(|node| node.has_tag_name(name)).count();
+    let svgs = document.descendants().filter(|node| node.tag_name().name() == "svg").count();
+    assert_eq!(count("figure"), svgs);
+    assert!(svgs >= 3 * 5 && count("table") >= 9, "{svgs} figures, {} tables", count("table"));
+    for outside in ["<script", "<link", "@import", "src=", "https:"] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    assert!(printed.contains("Table 4"));
+    assert!(folder.path().join("fit/laurel/figures/hemisphere-wavelengths.svg").is_file());
+}

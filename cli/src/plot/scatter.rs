@@ -31,7 +31,7 @@ pub fn scatter(prefix: &str, title: &str, pairs: &[[f64; 2]]) -> Result<String, 
     let shade = |count: u32| ((f64::from(count).ln() / most.ln()) * SHADES as f64).min(SHADES as f64 - 1.0) as usize;
     let colour = |shade: usize| hex(0.86 - 0.86 * shade as f64 / (SHADES as f64 - 1.0));
 
-    let mut svg = Svg::new(96.0 + SIDE + 130.0, 70.0 + SIDE + 96.0, prefix, title, "density of values");
+    let mut svg = Svg::new(96.0 + SIDE + 130.0, 70.0 + SIDE + 64.0, prefix, title, "density of values");
     svg.text([24.0, 34.0], title, TextStyle { size: 18.0, bold: true, ..TextStyle::default() });
     frame.grid(&mut svg);
     let size = SIDE / CELLS as f64;

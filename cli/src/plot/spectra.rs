@@ -163,9 +163,9 @@ fn fitted(prefix: &str, title: &str, note: &str, nm: &[f64], lines: &[Line<'_>])
     svg.end();
     frame.axes(&mut svg, false, false);
     below.axes(&mut svg, true, false);
-    for (frame, label) in [(&frame, &frame.y.label), (&below, &below.y.label)] {
-        let style = TextStyle { class: "axis-label", upwards: true, ..TextStyle::middle() };
-        svg.text([30.0, frame.top + 0.5 * frame.height], label, style);
+    for (frame, size) in [(&frame, super::style::TEXT_PX), (&below, SMALL_PX)] {
+        let style = TextStyle { class: "axis-label", upwards: true, size, ..TextStyle::middle() };
+        svg.text([30.0, frame.top + 0.5 * frame.height], &frame.y.label, style);
     }
     let y = bottom + 72.0;
     let mut x = left;

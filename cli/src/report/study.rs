@@ -55,6 +55,7 @@ fn of_leaves(
         columns: [vec!["leaf".to_string()], cells(columns)].concat(),
         rows: study.leaves.iter().map(named).collect(),
         note: note.to_string(),
+        prose: false,
     })
 }
 
@@ -103,7 +104,7 @@ fn power(value: f64) -> String {
 fn measured(drawn: &Drawn) -> Section {
     let mut blocks = vec![text(
         "Bright where the leaf mirrors the source, dark elsewhere: the smooth laurel has a narrow peak, the rough hazel is brightest \
-         towards the horizon. The maps above are interpolated between the directions measured; those below are the model's, fitted \
+         towards the horizon. The upper maps are interpolated between the directions measured; the lower ones are the model's, fitted \
          band by band.",
     )];
     blocks.extend(figure_of(drawn, "laurel", "hemisphere-wavelengths"));
@@ -167,7 +168,8 @@ fn invariance(study: &Study) -> Section {
         study,
         "(max − min)/mean over the bands",
         &columns,
-        "Here n and σ are the same at every wavelength, and noise alone makes them vary. The paper's leaves vary as much in the VIS; \
+        "Here n and σ are the same at every wavelength, and noise alone makes them vary: by half to three quarters \
+         of what the paper prints for the VIS; \
          its hazel reaches almost 25 % in n in the NIR, which noise of this size does not.",
         |leaf| {
             let percent = |value: f64| format!("{} %", fixed(100.0 * value, 1));
@@ -266,6 +268,7 @@ fn five(study: &Study, drawn: &Drawn) -> Section {
         note: "The paper found the fit of all five at once unstable. With exact derivatives and many starts it is not: the starts that \
                agree are in summary.json."
             .to_string(),
+        prose: false,
     });
     let mut blocks = vec![rmse, interior];
     blocks.extend(figures(drawn, "dhrf-zenith"));
@@ -296,6 +299,7 @@ fn integrated(study: &Study) -> Section {
         note: "A peak narrower than the distance between the views is seen by one or two of them: interpolation alone cannot know how \
                much light it holds. With the fitted lobe subtracted before, and its own DHRF added behind, it need not."
             .to_string(),
+        prose: false,
     };
     Section { heading: "DHRF without a model (§3.1)".to_string(), blocks: vec![Block::Table(table)] }
 }
@@ -305,10 +309,10 @@ fn statements(statements: &[Statement]) -> Block {
         let found: Vec<String> = one.found.iter().map(|(label, value)| format!("{label}: {value:.3}")).collect();
         vec![
             format!("§{}", one.section),
-            one.says.to_string(),
-            found.join(", "),
+            typeset(one.says),
+            typeset(&found.join(", ")),
             one.verdict.name().to_string(),
-            one.because.to_string(),
+            typeset(one.because),
         ]
     };
     Block::Table(Table {
@@ -316,7 +320,14 @@ fn statements(statements: &[Statement]) -> Block {
         columns: cells(&["section", "says", "found", "verdict", "because"]),
         rows: statements.iter().map(row).collect(),
         note: String::new(),
+        prose: true,
     })
+}
+
+/// Words of the terminal as the page writes them.
+fn typeset(words: &str) -> String {
+    let pairs = [("DHRF_spec", "DHRF_{spec}"), ("theta_s", "θ_s"), (" deg", "°"), ("sigma", "σ"), (" - ", " − ")];
+    pairs.iter().fold(words.to_string(), |words, (plain, set)| words.replace(plain, set))
 }
 
 fn sensitivity(study: &Study) -> Section {
@@ -342,6 +353,7 @@ fn normalization(study: &Study) -> Section {
         note: "The values of Table 4 belong to the constant as printed: under the derived one they would be brighter than what was \
                measured. n fitted under one is never to be compared with n fitted under the other."
             .to_string(),
+        prose: false,
     };
     Section { heading: "Which constant in Eq. 10?".to_string(), blocks: vec![Block::Table(table)] }
 }
