@@ -24,6 +24,10 @@ features:
 no-std:
     .ci/no-std
 
+# costs on four boards under QEMU against firmware/footprint/footprint.csv; `just footprint update` rewrites it
+footprint MODE="check":
+    firmware/footprint/run {{MODE}}
+
 # golden values only
 golden:
     .ci/test --test golden
