@@ -30,6 +30,6 @@ mod residuals;
 pub use engine::dhrf;
 pub use parameters::{Prior, Treatment};
 pub use problem::{DirectionalData, LeafError, LeafOptions, Method, SurfaceFrom, default_bounds, fit};
-pub use recipe::{HeldSd, Interior, RECIPES, RECOMMENDED, Recipe};
+pub use recipe::{HeldSd, Interior, RECIPES, RECOMMENDED, Recipe, ShareRule};
 pub use report::{Knowledge, LeafFit, OtherLeaf, RecipeReport};
 pub use residuals::ResidualModel;

@@ -73,7 +73,7 @@ impl LeafOutcome {
 
     /// The inside of the leaf.
     fn interior(&self) -> Interior {
-        if self.fit.method == Method::Recommended { self.options.recipe.interior } else { self.options.interior }
+        self.fit.recipe.as_ref().map_or(self.options.interior, |report| report.interior)
     }
 
     /// Has the model this parameter at all?

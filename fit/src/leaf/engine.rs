@@ -527,3 +527,94 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     }
     sums.iter().sum::<f64>() + rest
 }
+
+#[cfg(test)]
+mod tests {
+    use leafbrdf_core::{DirectionVectors, Normalization};
+    use leafbrdf_prospect::Version;
+
+    use super::super::parameters::NAMES;
+    use super::super::problem::{default_bounds, tabulate, view};
+    use super::*;
+    use crate::surface::DiffuseKind;
+
+    const NM: [f64; 7] = [450.0, 550.0, 710.0, 850.0, 1250.0, 1650.0, 2200.0];
+
+    fn directions() -> Vec<DirectionVectors<f64>> {
+        let deg = Angle::from_degrees;
+        [(30.0, 0.0), (30.0, 180.0), (55.0, 150.0), (15.0, 60.0)]
+            .map(|(theta_v, phi_v)| DirectionVectors::from_angles(deg(35.0), deg(theta_v), deg(phi_v)).unwrap())
+            .to_vec()
+    }
+
+    /// χ² at x of a leaf that is somewhere else, every parameter free; with its gradient by the coordinates.
+    fn check(coupling: Coupling, scaled_index: bool, interior: Interior, facets: FacetKind, residuals: ResidualModel) {
+        let directions = directions();
+        let columns = tabulate(Version::D, &NM).unwrap();
+        let surface = LeafModel {
+            directions: &directions,
+            facets,
+            diffuse: DiffuseKind::P1,
+            normalization: Normalization::CookTorrance,
+        };
+        let model = Model {
+            prospect: Prospect::new(view(Version::D, &NM, &columns).unwrap()),
+            interior,
+            coupling,
+            scaled_index,
+            surface: Some(surface),
+        };
+        let mut x = [0.0; COUNT];
+        x[..6].copy_from_slice(&[1.45, 0.3, 0.12, -0.05, 0.03, -0.02]);
+        if scaled_index {
+            x[N] = 1.05;
+        }
+        for (parameter, value) in Parameter::ALL.into_iter().zip([1.6, 35.0, 9.0, 2.0, 0.1, 0.012, 0.007, 0.0, 0.0]) {
+            x[place(parameter)] = value;
+        }
+        (x[GAIN], x[OFFSET]) = (1.08, 0.015);
+        let treatments: [Treatment; COUNT] = core::array::from_fn(|i| match i {
+            // unknown to version D
+            13 | 14 => Treatment::Held(0.0),
+            N => Treatment::Free { bounds: Interval::new(if scaled_index { 0.8 } else { 1.1 }, 3.0), prior: None },
+            SIGMA => Treatment::Free { bounds: Interval::new(0.01, 1.0), prior: Some(Prior::plain(0.2, 0.1)) },
+            2..6 => Treatment::Free { bounds: Interval::new(-0.3, 0.3), prior: Some(Prior::plain(0.0, 0.1)) },
+            7 => Treatment::within(7, default_bounds(7, true), Some(Prior::log(60.0, 0.5))),
+            _ => Treatment::Free { bounds: default_bounds(i, false), prior: None },
+        });
+        let brf: Vec<f64> = (0..directions.len() * NM.len()).map(|i| 0.2 + 0.1 * ((i * i) as f64).sin()).collect();
+        let measured = Measured { wavelengths_nm: &NM, brf: &brf, sd: None };
+        let mut cost = Cost::new(model, measured, &residuals, &treatments, 0.7);
+        let u = cost.coordinates(&x);
+        let exact = cost.evaluate(&u);
+        for i in (0..COUNT).filter(|i| treatments[*i].is_free()) {
+            let h = 1e-4 * cost.axes[i].bounds().width();
+            let mut at = |step: f64| {
+                let mut u = u;
+                u[i] += step;
+                cost.evaluate(&u).cost
+            };
+            let difference = (8.0 * (at(h) - at(-h)) - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h);
+            // rounding 1e-16 · cost/h; DHRF by grade E8 makes steps of 4e-9 of itself where its nodes change
+            let tolerance = 1e-7 * exact.cost.max(exact.gradient[i].abs());
+            assert!(
+                (exact.gradient[i] - difference).abs() < tolerance,
+                "{}: {} {difference}",
+                NAMES[i],
+                exact.gradient[i]
+            );
+        }
+    }
+
+    #[test]
+    fn the_gradient_is_that_of_differences_under_every_coupling_interior_and_facet() {
+        let two = Interior::TwoLayer { upper_share: 0.65 };
+        let slow = ResidualModel { slow_sd: 0.01, length_nm: 100.0, white_sd: 0.005 };
+        let white = ResidualModel::white(1.0);
+        check(Coupling::Bousquet, false, Interior::Plain, FacetKind::Beckmann, white);
+        check(Coupling::Bousquet, false, two, FacetKind::Ggx, white);
+        check(Coupling::Prospecular, true, Interior::Plain, FacetKind::Beckmann, white);
+        check(Coupling::Offset, false, Interior::Plain, FacetKind::Ggx, slow);
+        check(Coupling::GainOffset, false, two, FacetKind::Beckmann, slow);
+    }
+}

@@ -161,12 +161,32 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
     for start in &starts {
         found.add(cost.search(start, options.tolerance, options.max_iterations), &cost);
     }
-    let best = found.best.ok_or(LeafError::Model)?;
+    let mut best = found.best.ok_or(LeafError::Model)?;
+    if let (Some(rule), Interior::TwoLayer { upper_share }) = (recipe.share_rule, recipe.interior) {
+        let errors = report::errors(&mut cost, &best.x, &best.at_bound, &treatments, Variance::Stated, None)?;
+        let (cm, log_sd) = dry_matter(&best.x, &errors);
+        let upper_share = rule.share(upper_share, cm, log_sd);
+        // C_m hardly depends on the share: once more is enough
+        cost = Cost::new(
+            Model { interior: Interior::TwoLayer { upper_share }, ..model },
+            measured,
+            &recipe.residuals,
+            &treatments,
+            1.0,
+        );
+        let mut again = Found::default();
+        again.add(cost.search(&best.x, options.tolerance, options.max_iterations), &cost);
+        found.iterations += again.iterations;
+        best = again.best.ok_or(LeafError::Model)?;
+    }
+    let interior = cost.model.interior;
     let HeldOff { sds } = HeldOff::new(recipe, &treatments);
-    let interior_errors = report::errors(&mut cost, &best.x, &best.at_bound, &treatments, Variance::Stated, Some(sds))?;
+    let interior_errors =
+        report::errors(&mut cost, &best.x, &best.at_bound, &treatments, Variance::Stated, Some(sds))?;
     let modelled = cost.modelled(&best.x)?;
     let report = RecipeReport {
         recipe,
+        interior,
         kept: dark.kept.clone(),
         wavelengths_nm: dark.wavelengths_nm.clone(),
         reflectance: dark.reflectance.clone(),
@@ -177,6 +197,15 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
     };
     let step = Step { x: best.x, treatments, errors: interior_errors, at_bound: best.at_bound };
     with_surface(leaf, options, step, &found, report)
+}
+
+/// C_m, or C_prot + C_cbc in its place, and the standard error of its logarithm.
+fn dry_matter(x: &[f64; COUNT], errors: &Errors) -> (f64, f64) {
+    use leafbrdf_prospect::Parameter::{Cbc, Cm, Prot};
+    let parts = [Cm, Prot, Cbc].map(place);
+    let total: f64 = parts.iter().map(|&i| x[i]).sum();
+    let variance: f64 = parts.iter().flat_map(|&i| parts.map(|j| errors.covariance[i][j])).sum();
+    (total, variance.max(0.0).sqrt() / total)
 }
 
 /// What is held in the interior step, as far as nobody has freed it.
@@ -297,7 +326,7 @@ fn with_surface(
     let prospect = options.prospect(leaf.view()?)?;
     let model = Model {
         prospect,
-        interior: options.recipe.interior,
+        interior: recipe_report.interior,
         coupling: Coupling::GainOffset,
         scaled_index: false,
         surface: has_surface.then_some(surface),

@@ -9,7 +9,7 @@ use leafbrdf_prospect::{LeafParams, Parameter, Version};
 use super::engine::{Cost, leaf_of};
 use super::parameters::{COUNT, Treatment, interior, place};
 use super::problem::{LeafError, Method};
-use super::recipe::Recipe;
+use super::recipe::{Interior, Recipe};
 use crate::bounds::AtBound;
 use crate::solver::Termination;
 
@@ -58,6 +58,8 @@ pub struct OtherLeaf {
 pub struct RecipeReport {
     /// The recipe.
     pub recipe: &'static Recipe,
+    /// The inside of the leaf in the end: the share of the pigments may follow from the dry matter.
+    pub interior: Interior,
     /// Directions that the interior was taken from, by their place in the data.
     pub kept: Vec<usize>,
     /// Wavelengths that the interior was taken from, nm.

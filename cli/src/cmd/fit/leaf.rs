@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use leafbrdf::fit::{LeafOutcome, LeafRecord, Selected, Selection, fit_leaf, write_records};
 use leafbrdf::output::file_name;
 use leafbrdf_fit::leaf::parameters::{GAIN, OFFSET, place};
-use leafbrdf_fit::leaf::recipe::{DORSIVENTRAL, PLAIN, TWO_LAYER};
+use leafbrdf_fit::leaf::recipe::{DORSIVENTRAL, DRY_MATTER, PLAIN, TWO_LAYER};
 use leafbrdf_fit::leaf::{Interior, LeafOptions, Method, Recipe, SurfaceFrom, Treatment};
 use leafbrdf_prospect::Coupling;
 use rayon::prelude::*;
@@ -31,7 +31,10 @@ pub enum MethodName {
 /// The inside of the leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum InteriorName {
-    /// Two piles of plates, two thirds of the pigments in the upper one: an assumption, chosen by chemistry
+    /// Two piles of plates, 70 % of the pigments in the upper one, less where there is more dry matter: an assumption, chosen by
+    /// chemistry
+    DryMatter,
+    /// The same with two thirds for every leaf
     Dorsiventral,
     /// The same with 65 %, and other constants of the recommended method
     TwoLayer,
@@ -42,6 +45,7 @@ pub enum InteriorName {
 impl InteriorName {
     fn recipe(self) -> &'static Recipe {
         match self {
+            InteriorName::DryMatter => &DRY_MATTER,
             InteriorName::Dorsiventral => &DORSIVENTRAL,
             InteriorName::TwoLayer => &TWO_LAYER,
             InteriorName::Plain => &PLAIN,
@@ -69,8 +73,8 @@ pub struct Options {
     /// From the interior to k_L, for two-step and joint; recommended has gain-offset [default: bousquet]
     #[arg(long, value_enum)]
     coupling: Option<CouplingName>,
-    /// The inside of the leaf; with recommended also the constants that go with it [default: dorsiventral for recommended, plain
-    /// for the others]
+    /// The inside of the leaf; with recommended also the constants that go with it [default: dry-matter for recommended, plain
+    /// for the others, where the share does not follow the dry matter]
     #[arg(long, value_enum)]
     interior: Option<InteriorName>,
     /// Where two-step takes n and sigma from [default: bands with the paper's surface, else surface]

@@ -164,6 +164,15 @@ impl LeafOutcome {
         json!({
             "name": recipe.name,
             "chosen_by_chemistry": recipe.chosen,
+            "upper_share_rule": recipe.share_rule.map_or(Value::Null, |rule| json!({
+                "upper_share": "at_reference - slope ln(cm / reference_cm), within bounds; at_reference where ln cm is too uncertain",
+                "at_reference": match recipe.interior {
+                    Interior::TwoLayer { upper_share } => json!(upper_share),
+                    Interior::Plain => Value::Null,
+                },
+                "slope": rule.slope, "reference_cm_g_cm2": rule.reference_cm, "within": rule.within,
+                "most_uncertain_ln_cm": rule.most_uncertain,
+            })),
             "n_struct_held": recipe.n_struct,
             "directions_kept": {
                 "rule": "the darkest half at 440, 450, 460, 680, 1930, 1940, 1950 nm, at least one",
