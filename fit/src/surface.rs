@@ -41,8 +41,8 @@ pub use search::{Prior, ScanSize, SearchOptions, Treatment, Valley, Valleys, pol
 #[cfg(feature = "std")]
 pub use errors::{Errors, Knowledge};
 #[cfg(feature = "std")]
-pub use leaf::{SurfaceBand, SurfaceData, SurfaceFit, SurfaceOptions, fit_surface};
-#[cfg(feature = "std")]
 pub(crate) use leaf::settle;
+#[cfg(feature = "std")]
+pub use leaf::{SurfaceBand, SurfaceData, SurfaceFit, SurfaceOptions, fit_surface};
 #[cfg(feature = "std")]
 pub use spectra::Spectra;
