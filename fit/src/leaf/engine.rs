@@ -578,7 +578,7 @@ mod tests {
             13 | 14 => Treatment::Held(0.0),
             N => Treatment::Free { bounds: Interval::new(if scaled_index { 0.8 } else { 1.1 }, 3.0), prior: None },
             SIGMA => Treatment::Free { bounds: Interval::new(0.01, 1.0), prior: Some(Prior::plain(0.2, 0.1)) },
-            2..6 => Treatment::Free { bounds: Interval::new(-0.3, 0.3), prior: Some(Prior::plain(0.0, 0.1)) },
+            2..=5 => Treatment::Free { bounds: Interval::new(-0.3, 0.3), prior: Some(Prior::plain(0.0, 0.1)) },
             7 => Treatment::within(7, default_bounds(7, true), Some(Prior::log(60.0, 0.5))),
             _ => Treatment::Free { bounds: default_bounds(i, false), prior: None },
         });

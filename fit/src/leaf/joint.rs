@@ -107,7 +107,7 @@ fn surfaces(leaf: &Leaf<'_>, options: &LeafOptions, model: &LeafModel<'_, f64>) 
 /// Means of n and σ over separately fitted bands, and their standard deviations.
 fn means_over_bands(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<([f64; 2], [f64; 2]), LeafError> {
     let directions = leaf.data.directions.len();
-    let inside = |nm: f64| nm >= TABLE_4_NM[0] && nm <= TABLE_4_NM[1];
+    let inside = |nm: f64| (TABLE_4_NM[0]..=TABLE_4_NM[1]).contains(&nm);
     let any = leaf.wavelengths_nm.iter().any(|nm| inside(*nm));
     let wanted: Vec<usize> = (0..leaf.bands.len()).filter(|&i| !any || inside(leaf.wavelengths_nm[i])).collect();
     let take = |values: &[f64]| -> Vec<f64> {
