@@ -140,7 +140,7 @@ impl<T: Real, const L: usize> Profile<'_, T, L> {
     }
 
     /// χ² at (n, σ) with the best k_L inside its bounds.
-    #[cfg_attr(feature = "std", inline(always))]
+    #[inline(always)]
     pub fn at(&mut self, n: T, sigma: T) -> Point<T> {
         // the solver's bounds keep n in the domain
         let index = match Dielectric::new(n) {

@@ -2,7 +2,6 @@
 
 use leafbrdf_core::Real;
 
-use super::profile::Point;
 use crate::bounds::{AtBound, BandBounds};
 use crate::linear::invert_spd;
 use crate::solver::Termination;
@@ -99,7 +98,7 @@ impl<T: Real> BandFit<T> {
         bounds: &BandBounds<T>,
         weights: Weights,
     ) -> Self {
-        let point = &best.point;
+        let point = best;
         let free: [bool; 3] = best.at_bound.map(|at| at == AtBound::Free);
         let free_count = free.iter().filter(|free| **free).count();
 
@@ -214,8 +213,19 @@ fn scaled_inverse<T: Real>(a: &[[T; 3]; 3]) -> Option<[[T; 3]; 3]> {
 pub(super) struct Candidate<T> {
     pub n: T,
     pub sigma: T,
-    pub point: Point<T>,
+    pub k_lambert: T,
+    /// χ²
+    pub cost: T,
+    /// Σ ω s_p and Σ ω s_p s_q: the normal matrix of (k_L, n, σ)
+    pub s: [T; 2],
+    pub s_s: [T; 3],
     pub at_bound: [AtBound; 3],
     pub iterations: u32,
     pub termination: Termination,
+}
+
+impl<T: Real> Candidate<T> {
+    pub fn valley(&self) -> Valley<T> {
+        Valley { parameters: [self.k_lambert, self.n, self.sigma], chi2: self.cost }
+    }
 }

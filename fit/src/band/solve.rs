@@ -111,33 +111,38 @@ impl<'a, T: Real, const L: usize> BandSolver<'a, T, L> {
         n_obs: usize,
         starts: impl Iterator<Item = Start<T>>,
     ) -> Option<BandFit<T>> {
-        let mut best: Option<Candidate<T>> = None;
-        let mut second: Option<Candidate<T>> = None;
-        let mut iterations = 0;
-        let mut count = 0;
+        let found = self.best_of(band, total_weight, starts)?;
+        let mut fit = BandFit::new(&found.best, total_weight, n_obs, &self.options.bounds, self.options.weights);
+        fit.iterations = found.iterations;
+        fit.starts = found.starts;
+        fit.second = found.second;
+        Some(fit)
+    }
+
+    /// The best minimum, and the next best that is distinct from it.
+    #[inline(always)]
+    fn best_of(&self, band: Band<T>, total_weight: T, starts: impl Iterator<Item = Start<T>>) -> Option<Found<T>> {
+        let mut found: Option<Found<T>> = None;
         for start in starts {
             let candidate = self.polish(band, total_weight, start);
-            iterations += candidate.iterations;
-            count += 1;
-            let Some(leader) = best else {
-                best = Some(candidate);
+            let Some(found) = &mut found else {
+                found = Some(Found { best: candidate, second: None, iterations: candidate.iterations, starts: 1 });
                 continue;
             };
-            let (winner, loser) =
-                if candidate.point.cost < leader.point.cost { (candidate, leader) } else { (leader, candidate) };
-            best = Some(winner);
-            if distinct(&winner, &loser) && second.is_none_or(|other| loser.point.cost < other.point.cost) {
-                second = Some(loser);
+            found.iterations += candidate.iterations;
+            found.starts += 1;
+            let mut loser = candidate.valley();
+            if candidate.cost < found.best.cost {
+                loser = found.best.valley();
+                found.best = candidate;
+            }
+            if distinct(&found.best, &loser) && found.second.is_none_or(|other| loser.chi2 < other.chi2) {
+                found.second = Some(loser);
             }
         }
-        let best = best?;
-        let mut fit = BandFit::new(&best, total_weight, n_obs, &self.options.bounds, self.options.weights);
-        fit.iterations = iterations;
-        fit.starts = count;
-        fit.second = second
-            .filter(|other| distinct(&best, other))
-            .map(|other| Valley { parameters: [other.point.k_lambert, other.n, other.sigma], chi2: other.point.cost });
-        Some(fit)
+        let mut found = found?;
+        found.second = found.second.filter(|other| distinct(&found.best, other));
+        Some(found)
     }
 
     /// One Newton search.
@@ -176,7 +181,10 @@ impl<'a, T: Real, const L: usize> BandSolver<'a, T, L> {
         Candidate {
             n,
             sigma,
-            point,
+            k_lambert: point.k_lambert,
+            cost: point.cost,
+            s: point.s,
+            s_s: point.s_s,
             at_bound: [k_at, minimum.at_bound[0], minimum.at_bound[1]],
             iterations: minimum.iterations,
             termination: minimum.termination,
@@ -213,9 +221,18 @@ fn count<T: Real>(band: &Band<T>) -> (T, usize) {
     (total, n_obs)
 }
 
+/// What the searches of one band have found.
+struct Found<T> {
+    best: Candidate<T>,
+    second: Option<Valley<T>>,
+    iterations: u32,
+    starts: u32,
+}
+
 /// Two minima are distinct where σ or n differ by more than a tenth of a per cent.
 #[inline(always)]
-fn distinct<T: Real>(a: &Candidate<T>, b: &Candidate<T>) -> bool {
+fn distinct<T: Real>(a: &Candidate<T>, b: &Valley<T>) -> bool {
     let apart = |x: T, y: T| (x - y).abs() > T::lit(1e-3) * x.abs();
-    apart(a.sigma, b.sigma) || apart(a.n, b.n)
+    let [_, n, sigma] = b.parameters;
+    apart(a.sigma, sigma) || apart(a.n, n)
 }
