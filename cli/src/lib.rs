@@ -7,6 +7,7 @@ pub mod measurement;
 pub mod output;
 pub mod plot;
 pub mod points;
+pub mod recovery;
 pub mod report;
 pub mod simulate;
 pub mod spectra;
