@@ -46,6 +46,8 @@ impl Case {
         } else {
             (random.between(1.0, 79.0), random.between(0.0, 360.0))
         };
+        // `clamp` could panic, and an image must hold no panic
+        #[allow(clippy::manual_clamp)]
         let theta_v = if theta_v < 1.0 {
             1.0
         } else if theta_v > 79.0 {
