@@ -198,7 +198,7 @@ mod tests {
 
     fn page() -> Page {
         let figure = || {
-            let mut svg = crate::plot::text::blank("one", "A & B");
+            let mut svg = plot::text::blank("one", "A & B");
             svg.insert_str(
                 svg.rfind("</svg>").unwrap(),
                 "<clipPath id=\"one-clip1\"/><g clip-path=\"url(#one-clip1)\"/>",

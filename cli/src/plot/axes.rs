@@ -49,10 +49,15 @@ pub struct Axis {
 impl Axis {
     /// From `from` to `to` as they are, with about `count` round ticks.
     pub fn exact(quantity: &str, unit: Unit, from: f64, to: f64, count: usize) -> Self {
-        let step = round_step((to - from) / count.max(1) as f64);
+        Self::stepped(quantity, unit, [from, to], round_step((to - from) / count.max(1) as f64))
+    }
+
+    /// With a tick at every multiple of `step`.
+    fn stepped(quantity: &str, unit: Unit, [from, to]: [f64; 2], step: f64) -> Self {
         let first = (from / step - 1e-9).ceil();
         let ticks = (0..100).map(|i| (first + f64::from(i)) * step).take_while(|tick| *tick <= to + 1e-9 * step);
-        Axis { from, to, logarithmic: false, ticks: ticks.collect(), label: format!("{quantity} ({})", unit.name()) }
+        let label = format!("{quantity} ({})", unit.name());
+        Axis { from, to, logarithmic: false, ticks: ticks.collect(), label }
     }
 
     /// Around the finite ones of some values, from tick to tick.
@@ -70,7 +75,7 @@ impl Axis {
             (least, most) = (least - 0.5 * smallest, most + 0.5 * smallest);
         }
         let step = round_step((most - least) / count.max(1) as f64);
-        Self::exact(quantity, unit, (least / step).floor() * step, (most / step).ceil() * step, count)
+        Self::stepped(quantity, unit, [(least / step).floor() * step, (most / step).ceil() * step], step)
     }
 
     /// From `from` to `to`, logarithmic, with ticks at 1, 2, 5 of each decade.
@@ -337,6 +342,9 @@ mod tests {
 
     #[test]
     fn scales_end_at_round_numbers() {
-        assert_eq!([0.97, 1.21, 0.29, 0.0099].map(round_up), [1.0, 1.5, 0.3, 0.01]);
+        for (value, round) in [(0.97, 1.0), (1.21, 1.5), (0.29, 0.3), (0.0099, 0.01), (2.0, 2.0)] {
+            // a product of a digit and a power of ten: one rounding each
+            assert!((round_up(value) / round - 1.0_f64).abs() < 1e-15, "{value}");
+        }
     }
 }
