@@ -107,3 +107,134 @@ fn an_impossible_row_is_named_with_its_column_and_nothing_is_printed() {
     fails(&["leaf", "--points", &path], 1, &["line 2", "coupling", "bousquet, prospecular, offset, gain-offset"]);
     fails(&["leaf"], 2, &["--points"]);
 }
+
+// `leafbrdf fit --model leaf`
+
+/// A wide file of the principal plane, every 10 nm, from `leafbrdf leaf --points`: PROSPECT-D under a rough surface.
+fn measured(folder: &Path, name: &str) -> String {
+    let views = [(50, 180), (40, 180), (30, 180), (20, 180), (10, 180), (0, 0), (20, 0), (40, 0), (50, 0)];
+    let names = "n,sigma,n_struct,cab,car,cant,cbrown,cw,cm,wavelength_nm,theta_s_deg,theta_v_deg,phi_v_deg";
+    let mut points = format!("{names}\n");
+    for nm in (400..=2500).step_by(10) {
+        for (theta_v, phi_v) in views {
+            points.push_str(&format!("1.45,0.25,1.5,42,9,1,0.005,0.013,0.006,{nm},35,{theta_v},{phi_v}\n"));
+        }
+    }
+    let points = file(folder, "points.csv", &points);
+    let (table, _) = table(&["leaf", "--points", &points]);
+    let brdf = table.require("brdf").unwrap();
+    let row = |of: &dyn Fn(&(i32, i32)) -> i32| views.iter().map(|v| of(v).to_string()).collect::<Vec<_>>().join(",");
+    let mut text = format!(
+        "# quantity: brdf\ntheta_s_deg,{}\ntheta_v_deg,{}\nphi_v_deg,{}\n",
+        row(&|_| 35),
+        row(&|view| view.0),
+        row(&|view| view.1)
+    );
+    for (place, nm) in (400..=2500).step_by(10).enumerate() {
+        text.push_str(&nm.to_string());
+        for view in 0..views.len() {
+            text.push_str(&format!(",{}", table.number(place * views.len() + view, brdf).unwrap()));
+        }
+        text.push('\n');
+    }
+    file(folder, name, &text)
+}
+
+/// The only row of DIR/leaves.csv.
+fn leaves(folder: &Path) -> Points {
+    Points::read(&folder.join("leaves.csv")).unwrap()
+}
+
+fn cell(points: &Points, name: &str) -> String {
+    points.text(0, points.require(name).unwrap()).to_string()
+}
+
+#[track_caller]
+fn number(points: &Points, name: &str) -> f64 {
+    points.number(0, points.require(name).unwrap()).unwrap()
+}
+
+#[test]
+fn the_default_call_gives_contents_surface_and_says_what_it_assumed() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = measured(folder.path(), "leaf.csv");
+    let out = folder.path().join("out");
+    let output = leafbrdf(&["fit", &input, "--model", "leaf", "-o", out.to_str().unwrap()]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let row = leaves(&out);
+    assert_eq!([cell(&row, "status"), cell(&row, "method"), cell(&row, "model")], ["done", "recommended", "leaf"]);
+    // pigments evenly spread in this leaf, which the recipe does not assume: C_ab within its own error, the others close
+    assert!((number(&row, "cab") - 42.0).abs() < 2.0 * number(&row, "cab_se"));
+    assert!((number(&row, "cw") / 0.013 - 1.0).abs() < 0.1 && (number(&row, "cm") / 0.006 - 1.0).abs() < 0.3);
+    assert_eq!(number(&row, "n_struct"), 1.5);
+    assert!(number(&row, "n") > 1.2 && number(&row, "gain") > 0.8 && cell(&row, "facets") == "ggx");
+    let summary = fs::read_to_string(out.join("summary.json")).unwrap();
+    for part in ["chosen_by_chemistry", "upper_share", "n_struct_held", "gain-offset", "directions_kept", "length_nm"] {
+        assert!(summary.contains(part), "no {part} in summary.json");
+    }
+    let bands = Points::read(&out.join("bands.csv")).unwrap();
+    let dhrf = Points::read(&out.join("dhrf.csv")).unwrap();
+    assert_eq!((bands.len(), dhrf.len()), (211, 211));
+    bands.require("k_l_se").unwrap();
+    let total = dhrf.number(50, dhrf.require("dhrf").unwrap()).unwrap();
+    let parts = ["dhrf_diffuse", "dhrf_specular"].map(|name| dhrf.number(50, dhrf.require(name).unwrap()).unwrap());
+    assert!((total - parts[0] - parts[1]).abs() < 1e-15 && parts[1] > 0.0);
+}
+
+#[test]
+fn a_joint_fit_through_files_finds_the_leaf_and_holds_what_it_is_told_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = measured(folder.path(), "leaf.csv");
+    let out = folder.path().join("out");
+    let options = ["--method", "joint", "--fix", "cbrown=0.005,cant=1", "--bounds", "cab=1:90"];
+    let call = [&["fit", &input, "--model", "leaf", "-o", out.to_str().unwrap()][..], &options[..]].concat();
+    let output = leafbrdf(&call);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let row = leaves(&out);
+    for (name, truth) in [
+        ("n", 1.45),
+        ("sigma", 0.25),
+        ("n_struct", 1.5),
+        ("cab", 42.0),
+        ("car", 9.0),
+        ("cant", 1.0),
+        ("cbrown", 0.005),
+        ("cw", 0.013),
+        ("cm", 0.006),
+    ] {
+        // noise-free: converged to 1e-10 of a χ² that is rounding
+        assert!((number(&row, name) / truth - 1.0).abs() < 1e-3, "{name}: {}", number(&row, name));
+    }
+    assert_eq!(cell(&row, "gain"), "", "this coupling has none");
+}
+
+#[test]
+fn options_that_mean_nothing_and_values_in_other_units_are_refused_with_a_remedy() {
+    let call = |options: &[&str], parts: &[&str]| {
+        fails(&[&["fit", "none.csv", "-o", "nowhere"][..], options].concat(), 2, parts);
+    };
+    call(&["--model", "bands", "--method", "joint"], &["--method", "--model leaf"]);
+    call(&["--model", "leaf", "--fix", "cm=20"], &["did you mean 20 g m⁻²"]);
+    call(&["--model", "leaf", "--coupling", "bousquet"], &["--method joint"]);
+    call(&["--model", "leaf", "--method", "joint", "--gain", "1"], &["--coupling gain-offset"]);
+    call(&["--model", "leaf", "--free", "cab", "--fix", "cab=40"], &["cab is free and fixed"]);
+    call(&["--model", "leaf", "--prospect", "5B", "--fix", "cant=2"], &["5B"]);
+    call(&["--model", "leaf", "--n-prior"], &["--n-prior"]);
+    assert!(!Path::new("nowhere").exists());
+}
+
+#[test]
+fn wavelengths_that_prospect_does_not_know_fail_by_name_and_the_others_are_done() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = measured(folder.path(), "good.csv");
+    let text = "# quantity: brf\ntheta_s_deg,30,30,30,30\ntheta_v_deg,0,20,40,60\nphi_v_deg,0,180,180,180\n300,0.1,0.1,0.1,0.1\n";
+    let bad = file(folder.path(), "bad.csv", text);
+    let out = folder.path().join("out");
+    let output = leafbrdf(&["fit", &bad, &good, "--model", "leaf", "-o", out.to_str().unwrap()]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("bad.csv: leaf bad:") && message.contains("400 to 2500 nm"), "{message}");
+    let rows = leaves(&out);
+    let status = rows.require("status").unwrap();
+    assert_eq!([rows.text(0, status), rows.text(1, status)], ["failed", "done"]);
+}
