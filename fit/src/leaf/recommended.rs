@@ -181,8 +181,7 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
     }
     let interior = cost.model.interior;
     let HeldOff { sds } = HeldOff::new(recipe, &treatments);
-    let interior_errors =
-        report::errors(&mut cost, &best.x, &best.at_bound, &treatments, Variance::Stated, Some(sds))?;
+    let interior_errors = report::errors(&mut cost, &best.x, &best.at_bound, &treatments, Variance::Stated, Some(sds))?;
     let modelled = cost.modelled(&best.x)?;
     let report = RecipeReport {
         recipe,
