@@ -223,8 +223,6 @@ fn bands() {
         0
     }
     let place = &raw mut workspace;
-    let (mut sum, mut largest, mut deepest) = (0, 0, 0);
-    let _ = (&mut sum, &mut largest, &mut deepest);
     let mut steps = 0;
     let mut sink = Sink::new();
     for case in 0..BANDS {
