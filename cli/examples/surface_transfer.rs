@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use leafbrdf::fit::{Selected, Selection};
 use leafbrdf::measurement::{ReadOptions, read_path};
 use leafbrdf_core::Normalization;
-use leafbrdf_fit::surface::model::{TILT_IN_PLANE, TILT_LATERAL};
+use leafbrdf_fit::surface::model::{PARAMETERS, TILT_IN_PLANE, TILT_LATERAL};
 use leafbrdf_fit::surface::{
     DirectionalModel, LeafModel, SurfaceData, SurfaceFit, SurfaceOptions, Treatment, fit_surface,
 };
@@ -63,6 +63,7 @@ fn main() {
         ("GGX, P1", SurfaceOptions::paper().with_ggx().with_p1()),
         ("GGX, tilt", SurfaceOptions::paper().with_ggx().with_tilt()),
         ("GGX, P1, tilt", SurfaceOptions::paper().with_ggx().with_p1().with_tilt()),
+        ("GGX, P2, tilt", SurfaceOptions::paper().with_ggx().with_p2().with_tilt()),
     ] {
         let (mut as_fitted, mut level, mut z) = (Vec::new(), Vec::new(), [Vec::new(), Vec::new()]);
         for pair in &pairs {
@@ -113,7 +114,7 @@ fn fit(leaf: &Selected, options: &SurfaceOptions) -> SurfaceFit {
     fit_surface(&SurfaceData { directions: &leaf.vectors, brdf: &leaf.brdf, sd: None }, options).expect("a fit")
 }
 
-fn misfit(fit: &SurfaceFit, x: [f64; 6], leaf: &Selected, options: &SurfaceOptions) -> f64 {
+fn misfit(fit: &SurfaceFit, x: [f64; PARAMETERS], leaf: &Selected, options: &SurfaceOptions) -> f64 {
     let model = LeafModel {
         directions: &leaf.vectors,
         facets: options.facets,

@@ -28,7 +28,7 @@ fn leaf(directions: &[DirectionVectors<f64>], bands: usize) -> Vec<f64> {
         normalization: options.normalization,
     };
     let mut values = Vec::new();
-    model.values(&[1.48, 0.22, 0.15, -0.05, 0.02, 0.0], |value| values.push(value)).expect("in the domain");
+    model.values(&[1.48, 0.22, 0.15, -0.05, 0.02, 0.0, 0.0], |value| values.push(value)).expect("in the domain");
     let mut brdf = Vec::new();
     for band in 0..bands {
         let k_l = 0.04 + 0.4 / (1.0 + (-(band as f64 - 220.0) / 12.0).exp());

@@ -300,5 +300,9 @@ fn settle<T: Real, const P: usize, O: Objective<T, P>>(
     }
     let there = objective.evaluate(&settled);
     // within a hair of the bound the costs differ by rounding
-    if there.cost <= here.cost + T::lit(64.0) * T::EPSILON * here.cost { (settled, there, at_bound) } else { (x, here, [AtBound::Free; P]) }
+    if there.cost <= here.cost + T::lit(64.0) * T::EPSILON * here.cost {
+        (settled, there, at_bound)
+    } else {
+        (x, here, [AtBound::Free; P])
+    }
 }

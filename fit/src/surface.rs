@@ -12,7 +12,7 @@
 //!
 //! # For other fits
 //!
-//! - [`LeafModel`]: per direction, diffuse shape and lobe with exact derivatives over [n, σ, a, b, t_x, t_y] (angles in
+//! - [`LeafModel`]: per direction, diffuse shape and lobe with exact derivatives over [n, σ, a, b, t_x, t_y, e] (angles in
 //!   radians), the [`DirectionalModel`] that everything else takes;
 //! - [`Profile`]: χ² with k_L eliminated, gradient and normal matrix, at any parameters, over caller-owned memory;
 //! - [`Moments`] and [`Group`]: what it is the χ² of. Rows may be bands as measured (gain 1), or rotations of them

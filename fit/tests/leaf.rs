@@ -396,7 +396,8 @@ fn other_versions_know_their_own_constituents() {
         let mut options = LeafOptions::new(Method::Recommended);
         options.version = version;
         let fit = leaf.fit(&options).unwrap();
-        let contents = fit.treatments[7..15].iter().filter(|one| one.is_free()).count();
+        let contents =
+            fit.treatments[place(Parameter::Cab)..=place(Parameter::Cbc)].iter().filter(|one| one.is_free()).count();
         assert_eq!(contents, free, "{version:?}");
         let cm = fit.interior().cm;
         assert!(cm > 0.002 && cm < 0.02, "{version:?}: {cm}");

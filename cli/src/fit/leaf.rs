@@ -5,12 +5,14 @@ mod summary;
 use std::io;
 use std::path::Path;
 
-use leafbrdf_core::{Angle, Diffuse, DomainError, Grade, Illumination, P1};
+use leafbrdf_core::{Angle, Diffuse, DomainError, Grade, Illumination, P2};
 use leafbrdf_fit::AtBound;
 use leafbrdf_fit::leaf::parameters::{GAIN, NAMES, OFFSET, interior, place};
 use leafbrdf_fit::leaf::{DirectionalData, Interior, Knowledge, LeafFit, LeafOptions, Method, Treatment, dhrf, fit};
 use leafbrdf_fit::surface::DiffuseKind;
-use leafbrdf_fit::surface::model::{DIFFUSE_A, DIFFUSE_B, N, PARAMETERS, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
+use leafbrdf_fit::surface::model::{
+    DIFFUSE_A, DIFFUSE_B, DIFFUSE_E, N, PARAMETERS, SIGMA, TILT_IN_PLANE, TILT_LATERAL,
+};
 use leafbrdf_prospect::{Coupling, Parameter, Version, table};
 
 use super::{FitFailure, LeafValues, Selected};
@@ -80,7 +82,8 @@ impl LeafOutcome {
     fn has(&self, i: usize) -> bool {
         match i {
             N | SIGMA => self.fit.has_surface,
-            DIFFUSE_A | DIFFUSE_B => self.fit.has_surface && self.options.surface.diffuse == DiffuseKind::P1,
+            DIFFUSE_A | DIFFUSE_B => self.fit.has_surface && self.options.surface.diffuse != DiffuseKind::Lambert,
+            DIFFUSE_E => self.fit.has_surface && self.options.surface.diffuse == DiffuseKind::P2,
             _ if i < PARAMETERS => self.fit.has_surface && self.fit.treatments[i] != Treatment::Held(0.0),
             GAIN => self.coupling() == Coupling::GainOffset,
             OFFSET => matches!(self.coupling(), Coupling::GainOffset | Coupling::Offset),
@@ -153,8 +156,10 @@ impl LeafOutcome {
         let angle = Angle::from_degrees(theta_s_deg);
         let nothing = Dhrf { theta_s_deg, specular: f64::NAN, specular_se: f64::NAN, diffuse: 1.0 };
         let diffuse = match self.options.surface.diffuse {
-            DiffuseKind::P1 if self.fit.has_surface => {
-                P1::new(self.fit.x[DIFFUSE_A], self.fit.x[DIFFUSE_B])?.hemispherical(angle.cos())
+            // P1 is P2 with e = 0
+            DiffuseKind::P1 | DiffuseKind::P2 if self.fit.has_surface => {
+                let [a, b, e] = [DIFFUSE_A, DIFFUSE_B, DIFFUSE_E].map(|i| self.fit.x[i]);
+                P2::new(a, b, e)?.hemispherical(angle.cos())
             }
             _ => 1.0,
         };
@@ -183,6 +188,7 @@ impl LeafOutcome {
             surface_se: [N, SIGMA, TILT_IN_PLANE, TILT_LATERAL].map(|i| self.standard_error(i)),
             p1: [self.value(DIFFUSE_A), self.value(DIFFUSE_B)],
             p1_se: [self.standard_error(DIFFUSE_A), self.standard_error(DIFFUSE_B)],
+            p2_e: [self.value(DIFFUSE_E), self.standard_error(DIFFUSE_E)],
             kinds: Some([self.options.surface.facets.name(), self.options.surface.diffuse.name()]),
             prospect: Parameter::ALL.map(of),
             prospect_se: Parameter::ALL.map(|parameter| self.standard_error(place(parameter))),
@@ -243,6 +249,7 @@ impl LeafOutcome {
             "sigma_se",
             "p1_a",
             "p1_b",
+            "p2_e",
             "tilt_in_plane_deg",
             "tilt_lateral_deg",
             "facets",
@@ -264,7 +271,7 @@ impl LeafOutcome {
             row.extend([Cell::Count(n_obs as u64), Cell::Text(converged), Cell::Text(&at_bound)]);
             row.push(optional(fit.k_lambert_se[place]));
             row.extend([N, SIGMA].map(|i| optional(self.standard_error(i))));
-            row.extend([DIFFUSE_A, DIFFUSE_B, TILT_IN_PLANE, TILT_LATERAL].map(|i| optional(self.value(i))));
+            row.extend([DIFFUSE_A, DIFFUSE_B, DIFFUSE_E, TILT_IN_PLANE, TILT_LATERAL].map(|i| optional(self.value(i))));
             row.extend([surface.facets.name(), surface.diffuse.name()].map(Cell::Text));
             row.push(Cell::Text(if k_l < 0.0 { "k_l negative" } else { "" }));
             row.push(Cell::Text(surface.normalization.name()));

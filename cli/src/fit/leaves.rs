@@ -18,7 +18,7 @@ pub struct LeafRow {
 }
 
 /// The columns that the contract names, in its order; cells of parameters that a model does not have are empty.
-const COLUMNS: [&str; 47] = [
+const COLUMNS: [&str; 49] = [
     "leaf",
     "status",
     "model",
@@ -66,6 +66,8 @@ const COLUMNS: [&str; 47] = [
     "offset",
     "gain_se",
     "offset_se",
+    "p2_e",
+    "p2_e_se",
 ];
 
 /// What a row says of a leaf that was fitted; `None` where a model has no such parameter.
@@ -85,10 +87,12 @@ pub struct LeafValues {
     pub prospect_se: [Option<f64>; 9],
     /// Standard errors of n, σ and both tilts (degrees).
     pub surface_se: [Option<f64>; 4],
-    /// a and b of the diffuse term P1.
+    /// a and b of the diffuse terms P1 and P2.
     pub p1: [Option<f64>; 2],
     /// Their standard errors.
     pub p1_se: [Option<f64>; 2],
+    /// e of the diffuse term P2, and its standard error.
+    pub p2_e: [Option<f64>; 2],
     /// Distribution of facets, and shape of the diffuse term.
     pub kinds: Option<[&'static str; 2]>,
     /// How a whole leaf was inverted.
@@ -167,13 +171,14 @@ pub fn write_records(
                 row.extend(errors.chain(&values.p1).chain(&values.p1_se).map(number));
                 row.extend(values.kinds.map_or([Cell::Empty; 2], |kinds| kinds.map(Cell::Text)));
                 row.push(values.method.map_or(Cell::Empty, Cell::Text));
-                row.extend(values.gain_and_offset.iter().chain(&values.gain_and_offset_se).map(number));
+                let coupling = values.gain_and_offset.iter().chain(&values.gain_and_offset_se);
+                row.extend(coupling.chain(&values.p2_e).map(number));
             }
             Err(sentence) => {
                 row.push(normalization.map_or(Cell::Empty, Cell::Text));
                 row.extend([Cell::Empty; 17]);
                 row.extend([Cell::Text(file), Cell::Text(sentence)]);
-                row.extend([Cell::Empty; 24]);
+                row.extend([Cell::Empty; 26]);
             }
         }
         table.row(&row)?;

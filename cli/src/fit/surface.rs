@@ -6,8 +6,8 @@ mod summary;
 use std::io;
 use std::path::Path;
 
-use leafbrdf_core::{Angle, Diffuse, DomainError, Grade, Illumination, Normalization, P1, Surface};
-use leafbrdf_fit::surface::model::{DIFFUSE_A, DIFFUSE_B, N, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
+use leafbrdf_core::{Angle, Diffuse, DomainError, Grade, Illumination, Normalization, P2, Surface};
+use leafbrdf_fit::surface::model::{DIFFUSE_A, DIFFUSE_B, DIFFUSE_E, N, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
 use leafbrdf_fit::surface::{DiffuseKind, FacetKind, Knowledge, SurfaceData, SurfaceFit, SurfaceOptions, Treatment};
 use leafbrdf_fit::{AtBound, Interval};
 
@@ -67,7 +67,7 @@ pub fn fit_surface(
 fn dhrf(fit: &SurfaceFit, options: &SurfaceOptions, theta_s_deg: f64) -> Result<Dhrf, DomainError> {
     let angle = Angle::from_degrees(theta_s_deg);
     let source = Illumination::new(angle)?;
-    let [n, sigma, a, b, ..] = fit.x;
+    let [n, sigma, a, b, _, _, e] = fit.x;
     let gradient = match options.facets {
         FacetKind::Beckmann => {
             Surface::new(n, sigma)?.with_normalization(options.normalization).dhrf_with_gradient(&source, Grade::E10)
@@ -78,7 +78,8 @@ fn dhrf(fit: &SurfaceFit, options: &SurfaceOptions, theta_s_deg: f64) -> Result<
     };
     let diffuse = match options.diffuse {
         DiffuseKind::Lambert => 1.0,
-        DiffuseKind::P1 => P1::new(a, b)?.hemispherical(angle.cos()),
+        // P1 is P2 with e = 0
+        DiffuseKind::P1 | DiffuseKind::P2 => P2::new(a, b, e)?.hemispherical(angle.cos()),
     };
     // first-order propagation; a parameter held, or at its bound, adds nothing, one without an error leaves none to give
     let errors = &fit.errors;
@@ -95,22 +96,24 @@ fn is_open(fit: &SurfaceFit, i: usize) -> bool {
     fit.parameters[i].is_free() && fit.at_bound[i] == AtBound::Free
 }
 
-/// Names of n, σ, a, b, t_x, t_y in files, and by what to multiply them there: angles are in degrees.
-const PARAMETERS: [(&str, f64); 6] = [
+/// Names of n, σ, a, b, t_x, t_y, e in files, and by what to multiply them there: angles are in degrees.
+const PARAMETERS: [(&str, f64); 7] = [
     ("n", 1.0),
     ("sigma", 1.0),
     ("p1_a", 1.0),
     ("p1_b", 1.0),
     ("tilt_in_plane_deg", 180.0 / core::f64::consts::PI),
     ("tilt_lateral_deg", 180.0 / core::f64::consts::PI),
+    ("p2_e", 1.0),
 ];
 
 impl SurfaceOutcome {
-    /// Has the model this parameter: n and σ always, a and b of P1, a tilt that was asked for or held elsewhere than at 0?
+    /// Has the model this parameter: n and σ always, a and b of P1 and P2, e of P2, a tilt that was asked for or held elsewhere than at 0?
     fn has(&self, i: usize) -> bool {
         match i {
             N | SIGMA => true,
-            DIFFUSE_A | DIFFUSE_B => self.options.diffuse == DiffuseKind::P1,
+            DIFFUSE_A | DIFFUSE_B => self.options.diffuse != DiffuseKind::Lambert,
+            DIFFUSE_E => self.options.diffuse == DiffuseKind::P2,
             _ => self.options.parameters[i] != Treatment::Held(0.0),
         }
     }
@@ -139,6 +142,7 @@ impl SurfaceOutcome {
             surface_se: [N, SIGMA, TILT_IN_PLANE, TILT_LATERAL].map(|i| self.standard_error(i)),
             p1: [self.value(DIFFUSE_A), self.value(DIFFUSE_B)],
             p1_se: [self.standard_error(DIFFUSE_A), self.standard_error(DIFFUSE_B)],
+            p2_e: [self.value(DIFFUSE_E), self.standard_error(DIFFUSE_E)],
             kinds: Some([self.options.facets.name(), self.options.diffuse.name()]),
             rmse: self.fit.rmse,
             r2: self.fit.r2,
@@ -209,6 +213,7 @@ impl SurfaceOutcome {
             "sigma_se",
             "p1_a",
             "p1_b",
+            "p2_e",
             "tilt_in_plane_deg",
             "tilt_lateral_deg",
             "facets",
@@ -229,7 +234,7 @@ impl SurfaceOutcome {
             row.extend([Cell::Text(if fitted { converged } else { "too_few_values" }), Cell::Text(&at_bound)]);
             row.push(optional(band.k_lambert_se));
             row.extend([N, SIGMA].map(|i| optional(self.standard_error(i).filter(|_| fitted))));
-            row.extend([DIFFUSE_A, DIFFUSE_B, TILT_IN_PLANE, TILT_LATERAL].map(|i| optional(self.value(i))));
+            row.extend([DIFFUSE_A, DIFFUSE_B, DIFFUSE_E, TILT_IN_PLANE, TILT_LATERAL].map(|i| optional(self.value(i))));
             row.extend(words.map(Cell::Text));
             table.row(&row)?;
         }

@@ -1,7 +1,7 @@
 //! The model at one wavelength, as a fit left it: any facets, any diffuse term, any tilt.
 
 use leafbrdf_core::{
-    Angle, Diffuse, DirectionVectors, DomainError, GgxSurface, Grade, Illumination, Lambert, Normalization, P1,
+    Angle, Diffuse, DirectionVectors, DomainError, GgxSurface, Grade, Illumination, Lambert, Normalization, P2,
     Surface, Tilt,
 };
 use serde_json::Value;
@@ -22,8 +22,8 @@ pub struct Shape {
     pub facets: Facets,
     /// The convention for K.
     pub normalization: Normalization,
-    /// Bowl a and asymmetry b of the diffuse term; `None` is Lambert's.
-    pub p1: Option<P1<f64>>,
+    /// The diffuse term, of which P1 is the case e = 0; `None` is Lambert's.
+    pub diffuse: Option<P2<f64>>,
     /// How the leaf lay.
     pub tilt: Tilt<f64>,
 }
@@ -45,16 +45,19 @@ impl Shape {
             Some("ggx") => Facets::Ggx,
             Some(other) => return Err(format!("facets {other} are not drawn")),
         };
-        let p1 = match word("diffuse") {
+        let diffuse = match word("diffuse") {
             None | Some("lambert") => None,
-            Some("p1") => Some(P1::new(number("p1_a").unwrap_or(0.0), number("p1_b").unwrap_or(0.0)).map_err(domain)?),
+            Some("p1" | "p2") => {
+                let [a, b, e] = ["p1_a", "p1_b", "p2_e"].map(|name| number(name).unwrap_or(0.0));
+                Some(P2::new(a, b, e).map_err(domain)?)
+            }
             Some(other) => return Err(format!("the diffuse term {other} is not drawn")),
         };
         let degrees = |name: &str| Angle::from_degrees(number(name).unwrap_or(0.0));
         let tilt = Tilt::new(degrees("tilt_in_plane_deg"), degrees("tilt_lateral_deg")).map_err(domain)?;
         let conventions = [Normalization::Bousquet2005, Normalization::CookTorrance];
         let normalization = conventions.into_iter().find(|one| Some(one.name()) == word("normalization"));
-        Ok(Shape { facets, normalization: normalization.unwrap_or_default(), p1, tilt })
+        Ok(Shape { facets, normalization: normalization.unwrap_or_default(), diffuse, tilt })
     }
 
     /// With n and σ.
@@ -88,7 +91,7 @@ impl LeafSurface {
     pub fn parts(&self, directions: &DirectionVectors<f64>) -> [f64; 2] {
         let Ok(seen) = directions.about(&self.shape.tilt) else { return [f64::NAN; 2] };
         let geometry = seen.geometry();
-        let diffuse = match self.shape.p1 {
+        let diffuse = match self.shape.diffuse {
             None => Lambert.shape(geometry),
             Some(bowl) => bowl.shape(geometry),
         };

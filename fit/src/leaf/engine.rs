@@ -554,7 +554,7 @@ mod tests {
         let surface = LeafModel {
             directions: &directions,
             facets,
-            diffuse: DiffuseKind::P1,
+            diffuse: DiffuseKind::P2,
             normalization: Normalization::CookTorrance,
         };
         let model = Model {
@@ -565,7 +565,7 @@ mod tests {
             surface: Some(surface),
         };
         let mut x = [0.0; COUNT];
-        x[..6].copy_from_slice(&[1.45, 0.3, 0.12, -0.05, 0.03, -0.02]);
+        x[..PARAMETERS].copy_from_slice(&[1.45, 0.3, 0.12, -0.05, 0.03, -0.02, 0.08]);
         if scaled_index {
             x[N] = 1.05;
         }
@@ -573,13 +573,14 @@ mod tests {
             x[place(parameter)] = value;
         }
         (x[GAIN], x[OFFSET]) = (1.08, 0.015);
+        let [cab, prot, cbc] = [Parameter::Cab, Parameter::Prot, Parameter::Cbc].map(place);
         let treatments: [Treatment; COUNT] = core::array::from_fn(|i| match i {
             // unknown to version D
-            13 | 14 => Treatment::Held(0.0),
+            i if i == prot || i == cbc => Treatment::Held(0.0),
             N => Treatment::Free { bounds: Interval::new(if scaled_index { 0.8 } else { 1.1 }, 3.0), prior: None },
             SIGMA => Treatment::Free { bounds: Interval::new(0.01, 1.0), prior: Some(Prior::plain(0.2, 0.1)) },
-            2..=5 => Treatment::Free { bounds: Interval::new(-0.3, 0.3), prior: Some(Prior::plain(0.0, 0.1)) },
-            7 => Treatment::within(7, default_bounds(7, true), Some(Prior::log(60.0, 0.5))),
+            2..PARAMETERS => Treatment::Free { bounds: Interval::new(-0.3, 0.3), prior: Some(Prior::plain(0.0, 0.1)) },
+            i if i == cab => Treatment::within(i, default_bounds(i, true), Some(Prior::log(60.0, 0.5))),
             _ => Treatment::Free { bounds: default_bounds(i, false), prior: None },
         });
         let brf: Vec<f64> = (0..directions.len() * NM.len()).map(|i| 0.2 + 0.1 * ((i * i) as f64).sin()).collect();

@@ -17,7 +17,7 @@ use crate::bounds::Interval;
 use crate::hemispherical;
 use crate::leaf_bands::{LeafBandsOptions, LeafData, fit_bands};
 use crate::solver::Termination;
-use crate::surface::model::{N, PARAMETERS, SIGMA};
+use crate::surface::model::{N, PARAMETERS, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
 use crate::surface::{DiffuseKind, FacetKind, LeafModel, Treatment as SurfaceTreatment};
 
 /// Bands of the grid on which the starts are tried; the best is then followed on all.
@@ -88,7 +88,7 @@ fn surfaces(leaf: &Leaf<'_>, options: &LeafOptions, model: &LeafModel<'_, f64>) 
     let mut starts: Vec<[f64; PARAMETERS]> = valleys.iter().take(SURFACES).map(|valley| valley.x).collect();
     let mut errors = [None; PARAMETERS];
     let paper = options.surface.facets == FacetKind::Beckmann && options.surface.diffuse == DiffuseKind::Lambert;
-    let tilted = (4..PARAMETERS).any(|i| parameters[i].is_free());
+    let tilted = [TILT_IN_PLANE, TILT_LATERAL].iter().any(|&place| parameters[place].is_free());
     if options.method == Method::TwoStep {
         starts.truncate(1);
         if options.surface_from == SurfaceFrom::Bands && paper && !tilted && leaf.seen >= LEAST_DIRECTIONS {

@@ -6,15 +6,15 @@ use crate::band::profile::{f0_from_n, n_from_f0};
 use crate::bounds::Interval;
 use crate::surface::model;
 
-/// How many parameters a leaf has: six of its surface, nine of its interior, gain and offset.
-pub const COUNT: usize = 17;
+/// How many parameters a leaf has: seven of its surface, nine of its interior, gain and offset.
+pub const COUNT: usize = 18;
 
 /// Where the interior's parameters begin, in the order of [`Parameter::ALL`].
 pub(super) const INTERIOR: usize = model::PARAMETERS;
 /// The place of g.
-pub const GAIN: usize = 15;
+pub const GAIN: usize = 16;
 /// The place of b.
-pub const OFFSET: usize = 16;
+pub const OFFSET: usize = 17;
 
 /// The place of an interior parameter.
 pub const fn place(parameter: Parameter) -> usize {
@@ -34,6 +34,7 @@ pub const NAMES: [&str; COUNT] = [
     "p1_b",
     "tilt_in_plane_deg",
     "tilt_lateral_deg",
+    "p2_e",
     "n_struct",
     "cab",
     "car",

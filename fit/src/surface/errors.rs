@@ -36,7 +36,7 @@ pub enum Knowledge {
     NoDegreesOfFreedom,
 }
 
-/// Errors of the surface's parameters [n, σ, a, b, t_x, t_y] (angles in radians).
+/// Errors of the surface's parameters [n, σ, a, b, t_x, t_y, e] (angles in radians).
 #[derive(Clone, Debug)]
 pub struct Errors {
     /// Standard errors; `None` where [`Knowledge`] says why.

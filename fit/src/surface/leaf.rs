@@ -7,8 +7,8 @@ use leafbrdf_core::{Angle, DirectionVectors, Normalization, Tilt};
 
 use super::errors::{self, Errors, leverage};
 use super::model::{
-    DIFFUSE_A, DIFFUSE_B, DiffuseKind, DirectionValue, DirectionalModel, FacetKind, LeafModel, N, PARAMETERS, SIGMA,
-    TILT_IN_PLANE, TILT_LATERAL,
+    DIFFUSE_A, DIFFUSE_B, DIFFUSE_E, DiffuseKind, DirectionValue, DirectionalModel, FacetKind, LeafModel, N,
+    PARAMETERS, SIGMA, TILT_IN_PLANE, TILT_LATERAL,
 };
 use super::profile::{Place, Profile};
 use super::search::{Prior, ScanSize, SearchOptions, Treatment, Valleys, polish, search};
@@ -112,6 +112,7 @@ impl SurfaceOptions {
         self.diffuse = DiffuseKind::Lambert;
         self.parameters[DIFFUSE_A] = Treatment::Held(0.0);
         self.parameters[DIFFUSE_B] = Treatment::Held(0.0);
+        self.parameters[DIFFUSE_E] = Treatment::Held(0.0);
         self
     }
 
@@ -122,6 +123,24 @@ impl SurfaceOptions {
         self.diffuse = DiffuseKind::P1;
         self.parameters[DIFFUSE_A] = free(0.15);
         self.parameters[DIFFUSE_B] = free(0.0);
+        self.parameters[DIFFUSE_E] = Treatment::Held(0.0);
+        self
+    }
+
+    /// The diffuse term P2: P1 with its priors, and e ~ N(0.1, 0.03).
+    ///
+    /// The prior of e is what the same 33 leaves have, in sample and where other views are predicted; it is narrow because
+    /// e falls with θ_s and is in part the instrument's. The bounds keep every triple positive.
+    #[must_use]
+    pub fn with_p2(mut self) -> Self {
+        let free = |mean, sd, most: f64| Treatment::Free {
+            bounds: Interval::new(-most, most),
+            prior: Some(Prior { mean, sd }),
+        };
+        self.diffuse = DiffuseKind::P2;
+        self.parameters[DIFFUSE_A] = free(0.15, 0.1, 0.59);
+        self.parameters[DIFFUSE_B] = free(0.0, 0.1, 0.59);
+        self.parameters[DIFFUSE_E] = free(0.1, 0.03, 0.4);
         self
     }
 
@@ -148,6 +167,7 @@ impl SurfaceOptions {
             (-0.99, 0.99, "p1_b", "-0.99 ≤ lower < upper ≤ 0.99"),
             (-0.8, 0.8, "tilt_in_plane", "within ±0.8 rad"),
             (-0.8, 0.8, "tilt_lateral", "within ±0.8 rad"),
+            (-0.99, 0.99, "p2_e", "-0.99 ≤ lower < upper ≤ 0.99"),
         ];
         for (one, (least, most, parameter, expected)) in self.parameters.iter().zip(limits) {
             let fine = match *one {
@@ -183,7 +203,7 @@ pub struct SurfaceBand {
 /// The result for one leaf.
 #[derive(Clone, Debug)]
 pub struct SurfaceFit {
-    /// n, σ, a, b, t_x, t_y (radians).
+    /// n, σ, a, b, t_x, t_y (radians), e.
     pub x: [f64; PARAMETERS],
     /// What became of each parameter; a tilt that the directions cannot see has been held.
     pub parameters: [Treatment<f64>; PARAMETERS],

@@ -1,15 +1,15 @@
-//! What one direction contributes: the diffuse term for k_L = 1 and the lobe, with derivatives over [n, σ, a, b, t_x, t_y].
+//! What one direction contributes: the diffuse term for k_L = 1 and the lobe, with derivatives over [n, σ, a, b, t_x, t_y, e].
 //!
 //! The equations are `leafbrdf_core`'s; this page only says which of them are asked for, and in which order the derivatives
 //! stand.
 
-use leafbrdf_core::diffuse::{Diffuse, Lambert, P1};
+use leafbrdf_core::diffuse::{Diffuse, Lambert, P1, P2};
 use leafbrdf_core::facet::Facets;
 use leafbrdf_core::masking::Masking;
 use leafbrdf_core::{Angle, Dielectric, DirectionVectors, DomainError, Normalization, Real, Surface, Tilt};
 
-/// How many parameters a surface has: n, σ, a, b, t_x, t_y.
-pub const PARAMETERS: usize = 6;
+/// How many parameters a surface has: n, σ, a, b, t_x, t_y, e.
+pub const PARAMETERS: usize = 7;
 
 /// The place of n, the refractive index.
 pub const N: usize = 0;
@@ -23,9 +23,11 @@ pub const DIFFUSE_B: usize = 3;
 pub const TILT_IN_PLANE: usize = 4;
 /// The place of t_y, the tilt across it, radians.
 pub const TILT_LATERAL: usize = 5;
+/// The place of e, how much the diffuse term knows of the angle through which the light turned.
+pub const DIFFUSE_E: usize = 6;
 
 /// The parameters' names in files, angles in degrees there.
-pub const NAMES: [&str; PARAMETERS] = ["n", "sigma", "p1_a", "p1_b", "tilt_in_plane_deg", "tilt_lateral_deg"];
+pub const NAMES: [&str; PARAMETERS] = ["n", "sigma", "p1_a", "p1_b", "tilt_in_plane_deg", "tilt_lateral_deg", "p2_e"];
 
 /// BRDF = k_L · `diffuse` + `specular` in one direction, with derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,9 +36,9 @@ pub struct DirectionValue<T> {
     pub diffuse: T,
     /// BRDF_spec, sr⁻¹.
     pub specular: T,
-    /// ∂diffuse/∂[n, σ, a, b, t_x, t_y].
+    /// ∂diffuse/∂[n, σ, a, b, t_x, t_y, e].
     pub d_diffuse: [T; PARAMETERS],
-    /// ∂specular/∂[n, σ, a, b, t_x, t_y].
+    /// ∂specular/∂[n, σ, a, b, t_x, t_y, e].
     pub d_specular: [T; PARAMETERS],
 }
 
@@ -57,7 +59,7 @@ pub trait DirectionalModel<T> {
     /// How many directions there are.
     fn directions(&self) -> usize;
 
-    /// Tells `set`, direction by direction, [diffuse for k_L = 1, specular] in sr⁻¹ at [n, σ, a, b, t_x, t_y].
+    /// Tells `set`, direction by direction, [diffuse for k_L = 1, specular] in sr⁻¹ at [n, σ, a, b, t_x, t_y, e].
     ///
     /// # Errors
     /// [`DomainError`] where the surface is outside its domain, or a direction below the tilted leaf's horizon.
@@ -98,6 +100,8 @@ pub enum DiffuseKind {
     Lambert,
     /// A bowl a and an asymmetry b: see [`P1`].
     P1,
+    /// The same, and e: see [`P2`].
+    P2,
 }
 
 impl DiffuseKind {
@@ -106,6 +110,7 @@ impl DiffuseKind {
         match self {
             DiffuseKind::Lambert => "lambert",
             DiffuseKind::P1 => "p1",
+            DiffuseKind::P2 => "p2",
         }
     }
 }
@@ -117,7 +122,7 @@ pub struct LeafModel<'a, T> {
     pub directions: &'a [DirectionVectors<T>],
     /// Distribution of facets, and masking.
     pub facets: FacetKind,
-    /// Shape of the diffuse term; a and b are not looked at where it is Lambert's.
+    /// Shape of the diffuse term; a, b and e are looked at only where it has them.
     pub diffuse: DiffuseKind,
     /// The constant K that n and σ belong to.
     pub normalization: Normalization,
@@ -158,8 +163,8 @@ impl<T: Real> LeafModel<'_, T> {
             set(DirectionValue {
                 diffuse: s.value,
                 specular: p.value,
-                d_diffuse: [T::ZERO, T::ZERO, s.d_a, s.d_b, s.d_in_plane, s.d_lateral],
-                d_specular: [p.d_n, p.d_sigma, T::ZERO, T::ZERO, p.d_in_plane, p.d_lateral],
+                d_diffuse: [T::ZERO, T::ZERO, s.d_a, s.d_b, s.d_in_plane, s.d_lateral, s.d_e],
+                d_specular: [p.d_n, p.d_sigma, T::ZERO, T::ZERO, p.d_in_plane, p.d_lateral, T::ZERO],
             });
         }
         Ok(())
@@ -173,7 +178,7 @@ impl<T: Real> DirectionalModel<T> for LeafModel<'_, T> {
 
     fn values(&self, x: &[T; PARAMETERS], set: impl FnMut([T; 2])) -> Result<(), DomainError> {
         let tilt = Self::tilt(x)?;
-        let [n, sigma, a, b, ..] = *x;
+        let [n, sigma, a, b, _, _, e] = *x;
         match (self.facets, self.diffuse) {
             (FacetKind::Beckmann, DiffuseKind::Lambert) => {
                 self.all_values(Surface::new(n, sigma)?, Lambert, &tilt, set)
@@ -182,13 +187,19 @@ impl<T: Real> DirectionalModel<T> for LeafModel<'_, T> {
                 self.all_values(Surface::new(n, sigma)?, P1::new(a, b)?, &tilt, set)
             }
             (FacetKind::Ggx, DiffuseKind::Lambert) => self.all_values(Surface::ggx(n, sigma)?, Lambert, &tilt, set),
+            (FacetKind::Beckmann, DiffuseKind::P2) => {
+                self.all_values(Surface::new(n, sigma)?, P2::new(a, b, e)?, &tilt, set)
+            }
             (FacetKind::Ggx, DiffuseKind::P1) => self.all_values(Surface::ggx(n, sigma)?, P1::new(a, b)?, &tilt, set),
+            (FacetKind::Ggx, DiffuseKind::P2) => {
+                self.all_values(Surface::ggx(n, sigma)?, P2::new(a, b, e)?, &tilt, set)
+            }
         }
     }
 
     fn derivatives(&self, x: &[T; PARAMETERS], set: impl FnMut(DirectionValue<T>)) -> Result<(), DomainError> {
         let tilt = Self::tilt(x)?;
-        let [n, sigma, a, b, ..] = *x;
+        let [n, sigma, a, b, _, _, e] = *x;
         match (self.facets, self.diffuse) {
             (FacetKind::Beckmann, DiffuseKind::Lambert) => {
                 self.all_derivatives(Surface::new(n, sigma)?, Lambert, &tilt, set)
@@ -201,6 +212,12 @@ impl<T: Real> DirectionalModel<T> for LeafModel<'_, T> {
             }
             (FacetKind::Ggx, DiffuseKind::P1) => {
                 self.all_derivatives(Surface::ggx(n, sigma)?, P1::new(a, b)?, &tilt, set)
+            }
+            (FacetKind::Beckmann, DiffuseKind::P2) => {
+                self.all_derivatives(Surface::new(n, sigma)?, P2::new(a, b, e)?, &tilt, set)
+            }
+            (FacetKind::Ggx, DiffuseKind::P2) => {
+                self.all_derivatives(Surface::ggx(n, sigma)?, P2::new(a, b, e)?, &tilt, set)
             }
         }
     }

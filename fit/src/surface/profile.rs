@@ -31,7 +31,7 @@ impl<T: Real> Place<T> {
     }
 }
 
-/// χ² and its derivatives over [n, σ, a, b, t_x, t_y].
+/// χ² and its derivatives over [n, σ, a, b, t_x, t_y, e].
 #[derive(Clone, Copy, Debug)]
 pub struct Derivatives<T> {
     /// χ².
@@ -56,7 +56,7 @@ impl<'a, T: Real, M: DirectionalModel<T>> Profile<'a, T, M> {
         (places.len() == model.directions()).then_some(Profile { model, moments, places })
     }
 
-    /// χ² at [n, σ, a, b, t_x, t_y].
+    /// χ² at [n, σ, a, b, t_x, t_y, e].
     ///
     /// # Errors
     /// The model's.
@@ -80,7 +80,7 @@ impl<'a, T: Real, M: DirectionalModel<T>> Profile<'a, T, M> {
         self.moments.constant + self.sum_up(|gain| gain == T::ZERO, |_, _, _| ())
     }
 
-    /// The rest of χ², at [n, σ, a, b, t_x, t_y].
+    /// The rest of χ², at [n, σ, a, b, t_x, t_y, e].
     ///
     /// # Errors
     /// The model's.

@@ -105,7 +105,7 @@ pub const MOST_VALLEYS: usize = 12;
 /// How the minimum is sought.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SearchOptions<T> {
-    /// What becomes of n, σ, a, b, t_x, t_y.
+    /// What becomes of n, σ, a, b, t_x, t_y, e.
     pub parameters: [Treatment<T>; PARAMETERS],
     /// ν: how many independent residuals the measurement counts as where priors are weighed against it.
     pub draws: T,
@@ -122,7 +122,7 @@ pub struct SearchOptions<T> {
 /// A minimum that a search has found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Valley<T> {
-    /// n, σ, a, b, t_x, t_y.
+    /// n, σ, a, b, t_x, t_y, e.
     pub x: [T; PARAMETERS],
     /// χ² · exp(Π/ν), what is minimised: χ² where there are no priors.
     pub cost: T,
@@ -351,6 +351,7 @@ pub fn polish<T: Real, M: DirectionalModel<T>>(
         3 => polish_free::<T, M, 3>(profile, options, start),
         4 => polish_free::<T, M, 4>(profile, options, start),
         5 => polish_free::<T, M, 5>(profile, options, start),
+        6 => polish_free::<T, M, 6>(profile, options, start),
         _ => polish_free::<T, M, PARAMETERS>(profile, options, start),
     }
 }
@@ -436,7 +437,7 @@ struct Cost<'a, 'b, T, M, const P: usize> {
 }
 
 impl<T: Real, M: DirectionalModel<T>, const P: usize> Cost<'_, '_, T, M, P> {
-    /// [n, σ, a, b, t_x, t_y] and their slopes by the coordinates.
+    /// [n, σ, a, b, t_x, t_y, e] and their slopes by the coordinates.
     fn parameters(&self, u: &[T; P]) -> ([T; PARAMETERS], [T; PARAMETERS]) {
         let (mut x, mut slope) = (self.fixed, [T::ONE; PARAMETERS]);
         for (place, u) in self.free.iter().zip(u) {

@@ -20,7 +20,7 @@ use super::{Arguments, Input, Range, prepare, progress_bar, read};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum MethodName {
     /// The most accurate that is known: the interior from the leaf's darkest directions, N held, gain and flat offset free; then the
-    /// surface (GGX facets, P1 diffuse term, tilt) from all directions
+    /// surface (GGX facets, P2 diffuse term, tilt) from all directions
     Recommended,
     /// The paper's (§4.6): n and σ first; then Eq. 17 inverted for the interior
     TwoStep,

@@ -9,7 +9,7 @@ use leafbrdf::fit::{LeafRecord, Selected, Selection, SurfaceOutcome, fit_surface
 use leafbrdf::output::file_name;
 use leafbrdf_core::Normalization;
 use leafbrdf_fit::Interval;
-use leafbrdf_fit::surface::model::{N, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
+use leafbrdf_fit::surface::model::{DIFFUSE_E, N, PARAMETERS, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
 use leafbrdf_fit::surface::{DiffuseKind, NAMES, Prior, SurfaceOptions, Treatment};
 use rayon::prelude::*;
 
@@ -32,6 +32,8 @@ pub enum Diffuse {
     Lambert,
     /// A bowl a and an asymmetry b: k_L/π (1 − a cosθ_s cosθ_v − b sinθ_s sinθ_v cosφ_v)/(1 − 2a/3)
     P1,
+    /// The same, and e for the angle through which the light turned: − e cos²2θ_a, over 1 − 2a/3 − e/2
+    P2,
 }
 
 /// The surface's options that the models of a whole leaf share.
@@ -48,10 +50,10 @@ pub struct Options {
     /// The leaf may be tilted in its holder: two angles more, each N(0°, 3°) and within ±10° [default: level]
     #[arg(long)]
     tilt: bool,
-    /// Parameters of the surface that are held: n, sigma, p1_a, p1_b, tilt_in_plane_deg, tilt_lateral_deg
+    /// Parameters of the surface that are held: n, sigma, p1_a, p1_b, p2_e, tilt_in_plane_deg, tilt_lateral_deg
     #[arg(long, value_name = "NAME=VALUE,…", value_delimiter = ',', allow_hyphen_values = true)]
     hold: Vec<Hold>,
-    /// What is known beforehand, as a mean and a standard deviation, or NAME=none [default: p1_a=0.15:0.1, p1_b=0:0.1,
+    /// What is known beforehand, as a mean and a standard deviation, or NAME=none [default: p1_a=0.15:0.1, p1_b=0:0.1, p2_e=0.1:0.03,
     /// tilt_in_plane_deg=0:3, tilt_lateral_deg=0:3]
     #[arg(long, value_name = "NAME=MEAN:SD,…", value_delimiter = ',', allow_hyphen_values = true)]
     prior: Vec<PriorOf>,
@@ -135,6 +137,7 @@ impl Options {
         }
         match self.diffuse {
             Some(Diffuse::P1) => options = options.with_p1(),
+            Some(Diffuse::P2) => options = options.with_p2(),
             Some(Diffuse::Lambert) => options = options.with_lambert(),
             None => {}
         }
@@ -157,7 +160,8 @@ impl Options {
         for Hold(place, value) in &self.hold {
             let has = match *place {
                 N | SIGMA | TILT_IN_PLANE | TILT_LATERAL => true,
-                _ => options.diffuse == DiffuseKind::P1,
+                DIFFUSE_E => options.diffuse == DiffuseKind::P2,
+                _ => options.diffuse != DiffuseKind::Lambert,
             };
             if !has {
                 return Err(absent("--hold", *place));
@@ -167,7 +171,7 @@ impl Options {
         options.robust = arguments.robust;
         options.valleys = usize::from(arguments.starts.unwrap_or(8));
         if arguments.start_n.is_some() || arguments.start_sigma.is_some() {
-            let mut start = [0.0; 6];
+            let mut start = [0.0; PARAMETERS];
             start[N] = arguments.start_n.unwrap_or(1.47);
             start[SIGMA] = arguments.start_sigma.unwrap_or(0.3);
             options.starts.push(start);

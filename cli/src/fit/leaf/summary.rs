@@ -7,7 +7,7 @@ use leafbrdf_core::Normalization;
 use leafbrdf_fit::AtBound;
 use leafbrdf_fit::leaf::parameters::{NAMES, interior, place};
 use leafbrdf_fit::leaf::{Interior, Knowledge, Method, RecipeReport, Treatment};
-use leafbrdf_fit::surface::model::{N, SIGMA, TILT_LATERAL};
+use leafbrdf_fit::surface::model::{N, PARAMETERS, SIGMA, TILT_LATERAL};
 use leafbrdf_prospect::Parameter;
 use serde_json::{Map, Value, json};
 
@@ -156,7 +156,7 @@ impl LeafOutcome {
             .collect();
         let priors: Map<String, Value> = (0..NAMES.len())
             .filter_map(|i| {
-                let prior = self.fit.treatments[i].prior().filter(|_| i >= 6)?;
+                let prior = self.fit.treatments[i].prior().filter(|_| i >= PARAMETERS)?;
                 let sd = if prior.log { "sd_of_ln" } else { "sd" };
                 Some((NAMES[i].to_string(), json!({"centre": prior.centre, sd: prior.sd})))
             })
