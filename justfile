@@ -28,6 +28,10 @@ no-std:
 footprint MODE="check":
     firmware/footprint/run {{MODE}}
 
+# the C interface, its object and examples on simulated boards
+firmware:
+    .ci/firmware
+
 # golden values only
 golden:
     .ci/test --test golden

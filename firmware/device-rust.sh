@@ -71,6 +71,13 @@ use_device_rust() {
     esac
 }
 
+# The version of the compiler that use_device_rust has chosen: costs are comparable within one version only.
+device_rustc_version() {
+    local rustc=rustc
+    [[ $device_cargo_name == debian ]] && rustc=/usr/bin/rustc
+    "$rustc" --version | cut -d ' ' -f 2
+}
+
 # What must not be in an image or object: the panic machinery, and the allocator's and C's heap.
 forbidden_symbols='panic|unwrap_failed|expect_failed|__rust_alloc|__rust_dealloc|__rust_realloc|__rg_|handle_alloc_error|malloc|_sbrk'
 
