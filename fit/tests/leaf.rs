@@ -442,3 +442,16 @@ fn impossible_input_is_refused_in_words() {
     assert_eq!(NAMES.len(), COUNT);
     assert_eq!(PLAIN.name, "plain");
 }
+
+#[test]
+fn no_second_minimum_is_deeper_than_the_result() {
+    // below 880 nm N, C_w and C_m are nearly exchangeable: other minima exist. 240 bands, so that starts see a part of them
+    let narrow: Vec<f64> = (0..240).map(|i| 480.0 + f64::from(i)).collect();
+    for seed in 0..4 {
+        let leaf = Leaf::coupled(narrow.clone(), &PLANE, Coupling::Bousquet, interior()).with_noise(3e-3, seed);
+        for method in [Method::TwoStep, Method::Joint] {
+            let fit = leaf.fit(&LeafOptions::new(method)).unwrap();
+            assert!(fit.second.as_ref().is_none_or(|second| second.cost >= fit.cost), "{method:?} {:?}", fit.second);
+        }
+    }
+}

@@ -207,6 +207,10 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
     let mut cost = Cost::new(model, problem.measured(), &ResidualModel::white(1.0), &treatments, prior_weight);
     let mut whole = Found::default();
     whole.add(cost.search(&best.x, options.tolerance, options.max_iterations), &cost);
+    // the runner-up too: costs of some bands and of all are not to be compared
+    if let Some(second) = found.second.filter(|second| second.cost < 2.0 * best.cost) {
+        whole.add(cost.search(&second.x, options.tolerance, options.max_iterations), &cost);
+    }
     let at = whole.best.ok_or(LeafError::Model)?;
     let spectrum = report::spectrum(&mut cost, &at.x)?;
     let errors = report::errors(&mut cost, &at.x, &at.at_bound, &treatments, Variance::Found(spectrum.scatter), None)?;
@@ -262,7 +266,7 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
         agreeing: found.agreeing(),
         iterations: found.iterations + whole.iterations,
         termination: whole.best.map_or(Termination::MaxIterations, |best| best.termination),
-        second: found.second.map(|other| super::OtherLeaf { x: other.x, cost: other.cost }),
+        second: whole.second.map(|other| super::OtherLeaf { x: other.x, cost: other.cost }),
         recipe: None,
     })
 }
