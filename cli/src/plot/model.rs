@@ -105,11 +105,13 @@ impl LeafSurface {
 }
 
 impl LeafSurface {
-    /// DHRF_spec at θ_s = 0; NaN for GGX facets, whose integral is not written out here.
+    /// DHRF_spec at θ_s = 0, of the leaf as if it lay level.
     pub fn dhrf_at_zenith(&self) -> f64 {
         match (&self.lobe, Illumination::new(Angle::from_degrees(0.0))) {
             (Lobe::Beckmann(surface), Ok(zenith)) => surface.dhrf(&zenith, Grade::E6),
-            _ => f64::NAN,
+            (Lobe::Ggx(surface), Ok(zenith)) => surface.dhrf(&zenith, Grade::E6),
+            // 0° is above the horizon
+            (_, Err(_)) => f64::NAN,
         }
     }
 }

@@ -112,7 +112,7 @@ pub fn dhrf_at_zenith(
         return Err("one band makes no spectrum".to_string());
     }
     if dhrf.iter().all(|value| value.is_nan()) {
-        return Err("these facets have no hemispherical integral yet".to_string());
+        return Err("no band has a DHRF".to_string());
     }
     let line = Line { name: "DHRF(λ, 0°)", measured: dhrf, modelled: prospect, series: series(0) };
     Ok(fitted(prefix, title, note, nm, &[line]))
