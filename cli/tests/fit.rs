@@ -205,7 +205,8 @@ fn wrong_usage_is_status_2_and_says_what_was_expected() {
         (&["--sigma-bounds", "0:1"], "bounds of sigma"),
         (&["--start-n", "7"], "--start-n 7 lies outside"),
         (&["--max-theta-v=-3"], "0 to 90"),
-        (&["--starts", "0"], "1..=4"),
+        (&["--starts", "0"], "1..=12"),
+        (&["--starts", "5"], "1 to 4 for --model bands"),
         (&["--normalization", "4pi"], "cook-torrance"),
     ] {
         let output = run(folder.path(), &[&["fit", "leaf.csv", "--model", "bands", "-o", "out"], arguments].concat());

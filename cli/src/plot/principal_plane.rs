@@ -57,7 +57,7 @@ pub fn principal_plane(
     let (left, top, pitch_x, pitch_y) = (96.0, 92.0, WIDTH + 92.0, HEIGHT + LOW + 118.0);
     let width = left + pitch_x * (columns - 1) as f64 + WIDTH + 36.0;
     let bottom = top + pitch_y * (rows - 1) as f64 + HEIGHT + 14.0 + LOW;
-    let mut svg = Svg::new(width.max(560.0), bottom + 116.0, prefix, title, note);
+    let mut svg = Svg::new(width.max(720.0), bottom + 116.0, prefix, title, note);
     svg.text([24.0, 34.0], title, TextStyle { size: 18.0, bold: true, ..TextStyle::default() });
     let (curve, points) = (series(1), series(0));
     for (place, (cut, values)) in panels.iter().enumerate() {
