@@ -321,6 +321,34 @@ fn one_leaf(
     Ok(summary)
 }
 
+/// Results, warnings and failures of leaves, by name, on standard error; failure of the command where a leaf has failed.
+/// `line` and `warnings` are what there is to say of one that has not.
+fn report_leaves<O>(
+    leaves: &[(&str, &Result<O, String>)],
+    line: impl Fn(&O) -> String,
+    warnings: impl Fn(&O) -> &[String],
+) -> Result<(), Failure> {
+    let mut errors = io::stderr().lock();
+    let mut failed = 0;
+    for (name, result) in leaves {
+        // Messages are a courtesy: where standard error is closed, the files are what was asked for.
+        let _ = match result {
+            Ok(outcome) => {
+                let _ = writeln!(errors, "{name}: {}", line(outcome));
+                warnings(outcome).iter().try_for_each(|warning| writeln!(errors, "warning: {name}: {warning}"))
+            }
+            Err(sentence) => {
+                failed += 1;
+                writeln!(errors, "error: {sentence}")
+            }
+        };
+    }
+    match failed {
+        0 => Ok(()),
+        _ => Err(Failure::Failed(format!("{failed} of {} leaves failed, the others are done", leaves.len()))),
+    }
+}
+
 /// Warnings and failures on standard error; failure of the command where a leaf has failed.
 fn report(rows: &[LeafRow]) -> Result<(), Failure> {
     let mut errors = io::stderr().lock();

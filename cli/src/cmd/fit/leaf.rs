@@ -1,7 +1,6 @@
 //! `leafbrdf fit --model leaf`: surface and interior of whole leaves.
 
 use std::fs;
-use std::io::{self, Write};
 
 use clap::{Args, ValueEnum};
 use leafbrdf::fit::{LeafOutcome, LeafRecord, Selected, Selection, fit_leaf, write_records};
@@ -199,7 +198,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         leaves.iter().zip(&results).map(|(leaf, r)| (leaf.name.clone(), leaf.file.clone(), values(r))).collect();
     write_records(&arguments.output, "leaf", Some(options.surface.normalization.name()), &records)
         .map_err(|error| Failure::writing(Some(&arguments.output.join("leaves.csv")), &error))?;
-    report(&leaves, &results)
+    let named: Vec<_> = leaves.iter().map(|leaf| leaf.name.as_str()).zip(&results).collect();
+    super::report_leaves(&named, LeafOutcome::line, |outcome| &outcome.warnings)
 }
 
 fn one_leaf(input: &Input, arguments: &Arguments, options: &LeafOptions, several: bool) -> Result<LeafOutcome, String> {
@@ -218,29 +218,6 @@ fn one_leaf(input: &Input, arguments: &Arguments, options: &LeafOptions, several
         .and_then(|()| outcome.write_summary(&folder, data, &input.file))
         .map_err(|error| format!("{}: cannot be written: {error}", folder.display()))?;
     Ok(outcome)
-}
-
-/// Results, warnings and failures on standard error; failure of the command where a leaf has failed.
-fn report(leaves: &[Input], results: &[Result<LeafOutcome, String>]) -> Result<(), Failure> {
-    let mut errors = io::stderr().lock();
-    let mut failed = 0;
-    for (leaf, result) in leaves.iter().zip(results) {
-        // Messages are a courtesy: where standard error is closed, the files are what was asked for.
-        let _ = match result {
-            Ok(outcome) => {
-                let _ = writeln!(errors, "{}: {}", leaf.name, outcome.line());
-                outcome.warnings.iter().try_for_each(|warning| writeln!(errors, "warning: {}: {warning}", leaf.name))
-            }
-            Err(sentence) => {
-                failed += 1;
-                writeln!(errors, "error: {sentence}")
-            }
-        };
-    }
-    match failed {
-        0 => Ok(()),
-        _ => Err(Failure::Failed(format!("{failed} of {} leaves failed, the others are done", leaves.len()))),
-    }
 }
 
 /// What --prospect, --free, --fix, --bounds and --car-per-cab say of a leaf's interior.

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::fs;
-use std::io::{self, Write};
+use std::io;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -355,7 +355,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         leaves.iter().zip(&results).map(|(leaf, r)| (leaf.name.clone(), leaf.file.clone(), values(r))).collect();
     write_records(&arguments.output, "prospect", None, &records)
         .map_err(|error| Failure::writing(Some(&arguments.output.join("leaves.csv")), &error))?;
-    report(&leaves, &results)
+    let named: Vec<_> = leaves.iter().map(|leaf| leaf.name.as_str()).zip(&results).collect();
+    super::report_leaves(&named, ProspectOutcome::line, |outcome| &outcome.warnings)
 }
 
 fn write(folder: &Path, data: &LeafSpectra, leaf: &Input, outcome: &ProspectOutcome) -> io::Result<()> {
@@ -389,27 +390,4 @@ fn read(arguments: &Arguments) -> Vec<Input> {
         }
     }
     inputs
-}
-
-/// Results, warnings and failures on standard error; failure of the command where a leaf has failed.
-fn report(leaves: &[Input], results: &[Result<ProspectOutcome, String>]) -> Result<(), Failure> {
-    let mut errors = io::stderr().lock();
-    let mut failed = 0;
-    for (leaf, result) in leaves.iter().zip(results) {
-        // Messages are a courtesy: where standard error is closed, the files are what was asked for.
-        let _ = match result {
-            Ok(outcome) => {
-                let _ = writeln!(errors, "{}: {}", leaf.name, outcome.line());
-                outcome.warnings.iter().try_for_each(|warning| writeln!(errors, "warning: {}: {warning}", leaf.name))
-            }
-            Err(sentence) => {
-                failed += 1;
-                writeln!(errors, "error: {sentence}")
-            }
-        };
-    }
-    match failed {
-        0 => Ok(()),
-        _ => Err(Failure::Failed(format!("{failed} of {} leaves failed, the others are done", leaves.len()))),
-    }
 }
