@@ -16,6 +16,7 @@
 mod azimuth;
 pub(crate) mod cell;
 mod check;
+pub(crate) mod columns;
 mod directions;
 mod error;
 pub(crate) mod header;

@@ -11,6 +11,7 @@ use leafbrdf_prospect::table::{self, View, columns_of};
 use leafbrdf_prospect::{Error, Version};
 
 use crate::measurement::cell::{self, Cell, remedy, shown, trim};
+use crate::measurement::columns::{Names, same_width, wrong_cell};
 use crate::measurement::input::{Source, at, decode, display_name, read_all};
 use crate::measurement::{Metadata, ReadError, header, read::stem};
 
@@ -85,7 +86,7 @@ fn read_named(name: &str, stem: &str, bytes: &[u8]) -> Result<Vec<LeafSpectra>, 
     let mut leaves: Vec<(Option<String>, Vec<Row>)> = Vec::new();
     let mut by_name: HashMap<Option<String>, usize> = HashMap::new();
     while source.next(&mut records, &mut record)? {
-        columns.same_width(source, &record)?;
+        same_width(source, &record, columns.width)?;
         let row = columns.row(source, &record)?;
         let key = columns.sample(source, &record)?;
         let place = *by_name.entry(key.clone()).or_insert_with(|| {
@@ -143,32 +144,22 @@ struct Row {
 
 impl Columns {
     fn find(source: Source<'_>, record: &ByteRecord) -> Result<Self, ReadError> {
-        let names: Vec<&[u8]> = record.iter().map(trim).collect();
-        let find = |name: &str| {
-            let mut places = names.iter().enumerate().filter(|(_, found)| **found == name.as_bytes());
-            let first = places.next().map(|(index, _)| index);
-            match places.next() {
-                Some((again, _)) => {
-                    let message = format!("a second column {name}: expected each name once");
-                    Err(source.error(at(record), Some(again + 1), message))
-                }
-                None => Ok(first),
-            }
-        };
+        let row = Names::new(source, record);
+        let names = &row.names;
         let found = shown(&names.join(&b", "[..]));
-        let Some(wavelength) = find("wavelength_nm")? else {
-            return Err(source.error(at(record), None, Columns::hint(&names, &found)));
+        let Some(wavelength) = row.find("wavelength_nm")? else {
+            return Err(row.error(Columns::hint(names, &found)));
         };
         let mut values = [None; 4];
         for (place, name) in values.iter_mut().zip(VALUES) {
-            *place = find(name)?;
+            *place = row.find(name)?;
         }
         if let [None, None, ..] = values {
             let brdf = names.iter().any(|name| name.ends_with(b"_deg") || *name == b"brf" || *name == b"brdf");
             let hint = if brdf { "; a file of BRF or BRDF is fitted with --model bands" } else { "" };
             let message =
                 format!("no column reflectance or transmittance (names are matched exactly): found {found}{hint}");
-            return Err(source.error(at(record), None, message));
+            return Err(row.error(message));
         }
         for (sd, of) in [(2, 0), (3, 1)] {
             if let ([Some(column), None], [name, missing]) = ([values[sd], values[of]], [VALUES[sd], VALUES[of]]) {
@@ -176,7 +167,7 @@ impl Columns {
                 return Err(source.error(at(record), Some(column + 1), message));
             }
         }
-        Ok(Columns { wavelength, values, sample: find("sample")?, width: names.len() })
+        Ok(Columns { wavelength, values, sample: row.find("sample")?, width: names.len() })
     }
 
     /// Why there is no column of wavelengths, as far as the first row tells.
@@ -198,22 +189,11 @@ impl Columns {
         )
     }
 
-    fn same_width(&self, source: Source<'_>, record: &ByteRecord) -> Result<(), ReadError> {
-        let (found, width) = (record.len(), self.width);
-        if found == width {
-            return Ok(());
-        }
-        let message = format!("{found} cells: expected {width}, as there are column names");
-        Err(source.error(at(record), Some(found.min(width) + usize::from(found > width)), message))
-    }
-
     fn row(&self, source: Source<'_>, record: &ByteRecord) -> Result<Row, ReadError> {
         let number = |column: usize, name: &str, kind: Kind| {
             let cell = record.get(column).unwrap_or(b"");
-            kind.number(cell).map_err(|why| ReadError {
-                column_name: Some(name.to_string()),
-                ..source.error(at(record), Some(column + 1), format!("found {}: {why}", shown(cell)))
-            })
+            kind.number(cell)
+                .map_err(|why| wrong_cell(source, record, column, name, format!("found {}: {why}", shown(cell))))
         };
         let mut values = [f64::NAN; 4];
         for (index, ((value, column), name)) in values.iter_mut().zip(self.values).zip(VALUES).enumerate() {
@@ -230,10 +210,7 @@ impl Columns {
         let cell = trim(record.get(column).unwrap_or(b""));
         if cell.is_empty() || cell.iter().any(u8::is_ascii_control) {
             let message = format!("found {}: expected the name of a sample", shown(cell));
-            return Err(ReadError {
-                column_name: Some("sample".to_string()),
-                ..source.error(at(record), Some(column + 1), message)
-            });
+            return Err(wrong_cell(source, record, column, "sample", message));
         }
         Ok(Some(String::from_utf8_lossy(cell).into_owned()))
     }

@@ -6,6 +6,7 @@ use csv::ByteRecord;
 
 use super::cell::{shown, trim};
 use super::check::{Kind, number};
+use super::columns::{Names, same_width, wrong_cell};
 use super::input::{Source, at};
 use super::read::Context;
 use super::{Azimuth, Direction, Layout, Measurement, Quantity, ReadError, azimuth, header};
@@ -23,7 +24,7 @@ pub(super) fn read(context: Context<'_>) -> Result<Vec<Measurement>, ReadError> 
 
     let mut leaves = Leaves::default();
     while source.next(&mut records, &mut record)? {
-        columns.same_width(source, &record)?;
+        same_width(source, &record, columns.width)?;
         let row = columns.row(source, &record)?;
         let leaf = match columns.sample {
             None => leaves.only(),
@@ -67,32 +68,21 @@ struct Row {
 impl Columns {
     fn find(context: &Context<'_>, record: &ByteRecord) -> Result<Self, ReadError> {
         let source = context.source;
-        let names: Vec<&[u8]> = record.iter().map(trim).collect();
-        let optional = |name: &str| {
-            let mut places = names.iter().enumerate().filter(|(_, found)| **found == name.as_bytes());
-            let first = places.next().map(|(index, _)| index);
-            match places.next() {
-                Some((again, _)) => {
-                    let message = format!("a second column {name}: expected each name once");
-                    Err(source.error(at(record), Some(again + 1), message))
-                }
-                None => Ok(first),
-            }
-        };
+        let names = Names::new(source, record);
         let required = |name: &str| {
-            optional(name)?.ok_or_else(|| {
-                let like = names.iter().find(|found| similar(found, name));
+            names.find(name)?.ok_or_else(|| {
+                let like = names.names.iter().find(|found| similar(found, name));
                 let like = like.map_or(String::new(), |found| format!("; is it {}?", shown(found)));
-                let list = names.iter().map(|name| String::from_utf8_lossy(name)).collect::<Vec<_>>().join(", ");
+                let list = names.names.iter().map(|name| String::from_utf8_lossy(name)).collect::<Vec<_>>().join(", ");
                 let mut short: String = list.chars().take(200).collect();
                 if short.len() < list.len() {
                     short.push('…');
                 }
                 let message = format!("no column {name} (names are matched exactly{like}): found {short:?}");
-                source.error(at(record), None, message)
+                names.error(message)
             })
         };
-        let (quantity, value) = Columns::quantity(context, record, optional("brf")?, optional("brdf")?)?;
+        let (quantity, value) = Columns::quantity(context, record, names.find("brf")?, names.find("brdf")?)?;
         Ok(Columns {
             wavelength: required("wavelength_nm")?,
             theta_s: required("theta_s_deg")?,
@@ -100,9 +90,9 @@ impl Columns {
             phi_v: required("phi_v_deg")?,
             value,
             quantity,
-            sd: optional("sd")?,
-            sample: optional("sample")?,
-            width: names.len(),
+            sd: names.find("sd")?,
+            sample: names.find("sample")?,
+            width: names.names.len(),
         })
     }
 
@@ -152,21 +142,10 @@ impl Columns {
         }
     }
 
-    fn same_width(&self, source: Source<'_>, record: &ByteRecord) -> Result<(), ReadError> {
-        let (found, width) = (record.len(), self.width);
-        if found == width {
-            return Ok(());
-        }
-        let message = format!("{found} cells: expected {width}, as there are column names");
-        Err(source.error(at(record), Some(found.min(width) + usize::from(found > width)), message))
-    }
-
     fn row(&self, source: Source<'_>, record: &ByteRecord) -> Result<Row, ReadError> {
         let read = |kind: Kind, column: usize, name: &str| {
-            number(kind, record.get(column).unwrap_or(b"")).map_err(|why| ReadError {
-                column_name: Some(name.to_string()),
-                ..source.error(at(record), Some(column + 1), why)
-            })
+            let cell = record.get(column).unwrap_or(b"");
+            number(kind, cell).map_err(|why| wrong_cell(source, record, column, name, why))
         };
         Ok(Row {
             wavelength: read(Kind::Wavelength, self.wavelength, "wavelength_nm")?,
@@ -215,10 +194,7 @@ impl Leaves {
             if !std::str::from_utf8(cell).is_ok_and(header::is_sample) {
                 let message =
                     format!("found {}: expected the name of a sample, without control characters", shown(cell));
-                return Err(ReadError {
-                    column_name: Some("sample".to_string()),
-                    ..source.error(at(record), Some(sample + 1), message)
-                });
+                return Err(wrong_cell(source, record, sample, "sample", message));
             }
             let next = self.leaves.len();
             self.last = *self.by_name.entry(cell.to_vec()).or_insert(next);
