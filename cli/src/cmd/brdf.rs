@@ -71,17 +71,16 @@ const COLUMNS: [&str; 16] = [
 ];
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let input = |column, flag, parameter, list, default| Input { column, flag, parameter, list, default };
     let inputs = Inputs::new(
         arguments.points.as_deref(),
         vec![
-            input("n", "--n", "n", arguments.n.as_ref(), None),
-            input("sigma", "--sigma", "sigma", arguments.sigma.as_ref(), None),
-            input("kappa", "--kappa", "kappa", arguments.kappa.as_ref(), Some(0.0)),
-            input("k_l", "--k-l", "k_lambert", arguments.k_l.as_ref(), Some(0.0)),
-            input("theta_s_deg", "--theta-s", "theta_s", arguments.theta_s.as_ref(), None),
-            input("theta_v_deg", "--theta-v", "theta_v", arguments.theta_v.as_ref(), None),
-            input("phi_v_deg", "--phi-v", "phi_v", arguments.phi_v.as_ref(), None),
+            Input::new("n", "--n", "n", arguments.n.as_ref(), None),
+            Input::new("sigma", "--sigma", "sigma", arguments.sigma.as_ref(), None),
+            Input::new("kappa", "--kappa", "kappa", arguments.kappa.as_ref(), Some(0.0)),
+            Input::new("k_l", "--k-l", "k_lambert", arguments.k_l.as_ref(), Some(0.0)),
+            Input::new("theta_s_deg", "--theta-s", "theta_s", arguments.theta_s.as_ref(), None),
+            Input::new("theta_v_deg", "--theta-v", "theta_v", arguments.theta_v.as_ref(), None),
+            Input::new("phi_v_deg", "--phi-v", "phi_v", arguments.phi_v.as_ref(), None),
         ],
     )?;
     let normalization = Normalization::from(arguments.normalization);

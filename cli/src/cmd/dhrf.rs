@@ -56,14 +56,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return measured::run(file, &arguments.integrate, arguments.normalization.into(), &arguments.output);
     }
     arguments.integrate.refuse()?;
-    let input = |column, flag, parameter, list, default| Input { column, flag, parameter, list, default };
     let inputs = Inputs::new(
         arguments.points.as_deref(),
         vec![
-            input("n", "--n", "n", arguments.n.as_ref(), None),
-            input("sigma", "--sigma", "sigma", arguments.sigma.as_ref(), None),
-            input("kappa", "--kappa", "kappa", arguments.kappa.as_ref(), Some(0.0)),
-            input("theta_s_deg", "--theta-s", "theta_s", arguments.theta_s.as_ref(), None),
+            Input::new("n", "--n", "n", arguments.n.as_ref(), None),
+            Input::new("sigma", "--sigma", "sigma", arguments.sigma.as_ref(), None),
+            Input::new("kappa", "--kappa", "kappa", arguments.kappa.as_ref(), Some(0.0)),
+            Input::new("theta_s_deg", "--theta-s", "theta_s", arguments.theta_s.as_ref(), None),
         ],
     )?;
     let normalization = Normalization::from(arguments.normalization);

@@ -37,13 +37,12 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let input = |column, flag, parameter, list, default| Input { column, flag, parameter, list, default };
     let inputs = Inputs::new(
         arguments.points.as_deref(),
         vec![
-            input("n", "--n", "n", arguments.n.as_ref(), None),
-            input("k", "--kappa", "kappa", arguments.kappa.as_ref(), Some(0.0)),
-            input("theta_deg", "--theta", "theta_a", arguments.theta.as_ref(), None),
+            Input::new("n", "--n", "n", arguments.n.as_ref(), None),
+            Input::new("k", "--kappa", "kappa", arguments.kappa.as_ref(), Some(0.0)),
+            Input::new("theta_deg", "--theta", "theta_a", arguments.theta.as_ref(), None),
         ],
     )?;
     tabulate(&inputs, &arguments.output, ["n", "k", "theta_deg", "f", "r_s", "r_p"], |row| {

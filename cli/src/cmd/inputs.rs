@@ -22,6 +22,18 @@ pub struct Input<'a> {
     pub default: Option<f64>,
 }
 
+impl<'a> Input<'a> {
+    pub fn new(
+        column: &'static str,
+        flag: &'static str,
+        parameter: &'static str,
+        list: Option<&'a List>,
+        default: Option<f64>,
+    ) -> Self {
+        Input { column, flag, parameter, list, default }
+    }
+}
+
 /// Rows of numbers, one number an input.
 pub struct Inputs<'a> {
     inputs: Vec<Input<'a>>,
