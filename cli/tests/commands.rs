@@ -2,56 +2,19 @@
 //!
 //! The golden files are those of model-core; what made them is said at their top.
 
-use std::io::{Read, Write};
+mod common;
+
+use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
+use common::{fails, leafbrdf, leafbrdf_with, table_with};
 use leafbrdf::points::Points;
-
-fn leafbrdf(arguments: &[&str]) -> Output {
-    leafbrdf_with(arguments, b"")
-}
-
-fn leafbrdf_with(arguments: &[&str], input: &[u8]) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_leafbrdf"))
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut stdin = child.stdin.take().unwrap();
-    let input = input.to_vec();
-    let writer = std::thread::spawn(move || stdin.write_all(&input));
-    let output = child.wait_with_output().unwrap();
-    // A command that does not read its input closes it early.
-    let _ = writer.join();
-    output
-}
 
 /// The table that a successful run prints.
 #[track_caller]
 fn table(arguments: &[&str]) -> Points {
     table_with(arguments, b"")
-}
-
-#[track_caller]
-fn table_with(arguments: &[&str], input: &[u8]) -> Points {
-    let output = leafbrdf_with(arguments, input);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    Points::from_bytes("output", &output.stdout).unwrap()
-}
-
-/// The run ends with this status and a message on standard error that has these parts.
-#[track_caller]
-fn fails(arguments: &[&str], input: &[u8], status: i32, parts: &[&str]) {
-    let output = leafbrdf_with(arguments, input);
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {message}");
-    assert!(output.stdout.is_empty(), "{arguments:?}: no results are printed on failure");
-    for part in parts {
-        assert!(message.contains(part), "{arguments:?}: no {part:?} in: {message}");
-    }
 }
 
 fn golden(name: &str) -> PathBuf {

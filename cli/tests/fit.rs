@@ -1,10 +1,12 @@
 //! `leafbrdf fit --model bands` as its user runs it: files in, files out, messages, exit status.
 
+mod common;
+
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 
+use common::{number, rows, run, stderr};
 use leafbrdf_core::{Angle, Geometry, Leaf, Normalization, Surface};
 
 const DIRECTIONS: [(f64, f64, f64); 14] = [
@@ -59,24 +61,6 @@ fn geometry((theta_s, theta_v, phi_v): (f64, f64, f64)) -> Geometry<f64> {
     Geometry::from_angles(deg(theta_s), deg(theta_v), deg(phi_v)).unwrap()
 }
 
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_leafbrdf")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-/// The rows of a CSV file as maps from column to cell.
-fn table(path: &Path) -> Vec<std::collections::HashMap<String, String>> {
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    reader.deserialize().collect::<Result<_, _>>().unwrap()
-}
-
-fn number(row: &std::collections::HashMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap()
-}
-
 #[test]
 fn exact_data_give_the_truth_back_under_either_normalisation() {
     for (name, normalization) in
@@ -88,7 +72,7 @@ fn exact_data_give_the_truth_back_under_either_normalisation() {
             let output =
                 run(folder.path(), &["fit", "leaf.csv", "--model", "bands", "--normalization", name, "-o", "out"]);
             assert!(output.status.success(), "{}", stderr(&output));
-            let bands = table(&folder.path().join("out/bands.csv"));
+            let bands = rows(&folder.path().join("out/bands.csv"));
             assert_eq!(bands.len(), 6);
             for row in &bands {
                 let wavelength = number(row, "wavelength_nm") as u32;
@@ -104,7 +88,7 @@ fn exact_data_give_the_truth_back_under_either_normalisation() {
                 assert!(number(row, "rmse") < 1e-9 && number(row, "n_se") < 1e-6);
             }
             // DHRF: the diffuse part is k_L exactly (Eq. 13), and the sum is the sum
-            let dhrf = table(&folder.path().join("out/dhrf.csv"));
+            let dhrf = rows(&folder.path().join("out/dhrf.csv"));
             assert_eq!(dhrf.len(), 6);
             for (row, band) in dhrf.iter().zip(&bands) {
                 assert_eq!(row["dhrf_diffuse"], band["k_l"]);
@@ -121,7 +105,7 @@ fn exact_data_give_the_truth_back_under_either_normalisation() {
             assert!((summary["parameters"]["n"]["mean_over_bands"].as_f64().unwrap() - 1.5).abs() < 1e-6);
             assert!(summary["spectral_invariance"]["all"]["n"].as_f64().unwrap() < 1e-5);
             assert!(summary["r2"].as_f64().unwrap() > 0.999_999);
-            let leaves = table(&folder.path().join("out/leaves.csv"));
+            let leaves = rows(&folder.path().join("out/leaves.csv"));
             assert_eq!((leaves.len(), leaves[0]["leaf"].as_str(), leaves[0]["status"].as_str()), (1, "leaf", "done"));
         }
     }
@@ -157,7 +141,7 @@ fn several_leaves_get_a_folder_each_and_one_that_fails_stops_no_other() {
     let message = stderr(&output);
     assert!(message.contains("broken.csv") && message.contains("1 of 3 leaves failed"), "{message}");
     assert!(path("out/a/bands.csv").exists() && path("out/b/bands.csv").exists() && !path("out/broken").exists());
-    let leaves = table(&path("out/leaves.csv"));
+    let leaves = rows(&path("out/leaves.csv"));
     let status: Vec<_> = leaves.iter().map(|row| (row["leaf"].as_str(), row["status"].as_str())).collect();
     assert_eq!(status, [("a", "done"), ("broken", "failed"), ("b", "done")]);
     assert!(leaves[1]["message"].contains("line 5"), "{:?}", leaves[1]);
@@ -172,7 +156,7 @@ fn two_leaves_of_one_name_do_not_overwrite_each_other() {
     let output = run(folder.path(), &["fit", "leaf.csv", "x/leaf.csv", "--model", "bands", "-o", "out"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(stderr(&output).contains("would overwrite"), "{}", stderr(&output));
-    assert!((number(&table(&folder.path().join("out/leaf/bands.csv"))[0], "n") - 1.5).abs() < 1e-6);
+    assert!((number(&rows(&folder.path().join("out/leaf/bands.csv"))[0], "n") - 1.5).abs() < 1e-6);
 }
 
 #[test]
@@ -183,7 +167,7 @@ fn wavelengths_directions_and_bounds_are_the_ones_asked_for() {
     let output = run(folder.path(), &[&arguments[..], &["--n-bounds", "1.1:1.4", "-o", "out"]].concat());
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(stderr(&output).contains("n sits at a bound in 4 of 4 bands"), "{}", stderr(&output));
-    let bands = table(&folder.path().join("out/bands.csv"));
+    let bands = rows(&folder.path().join("out/bands.csv"));
     let wavelengths: Vec<_> = bands.iter().map(|row| row["wavelength_nm"].as_str()).collect();
     assert_eq!(wavelengths, ["550", "670", "700", "780"]);
     for row in &bands {
@@ -248,7 +232,7 @@ fn too_few_values_in_a_band_are_said_and_the_other_bands_are_done() {
     let output = run(folder.path(), &["fit", "leaf.csv", "--model", "bands", "-o", "out"]);
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(stderr(&output).contains("1 of 6 bands have fewer than 3 values"), "{}", stderr(&output));
-    let bands = table(&folder.path().join("out/bands.csv"));
+    let bands = rows(&folder.path().join("out/bands.csv"));
     assert_eq!((bands[1]["status"].as_str(), bands[1]["n"].as_str()), ("too_few_values", ""));
     assert!(bands[1]["note"].contains("fewer than 3"), "{:?}", bands[1]);
     assert_eq!((bands[2]["n_obs"].as_str(), bands[2]["status"].as_str()), ("12", "converged"));
@@ -286,7 +270,7 @@ fn standard_deviations_of_the_file_are_weights_and_can_be_left_out() {
     let n = |arguments: &[&str]| {
         let output = run(folder.path(), &[&["fit", "leaf.csv", "--model", "bands", "-o", "out"], arguments].concat());
         assert!(output.status.success(), "{}", stderr(&output));
-        let row = table(&folder.path().join("out/bands.csv")).remove(0);
+        let row = rows(&folder.path().join("out/bands.csv")).remove(0);
         (number(&row, "n"), number(&row, "n_se"), number(&row, "rmse"))
     };
     let (weighted, error, rmse) = n(&[]);
@@ -338,7 +322,7 @@ fn robust_fits_and_starts_of_ones_own_are_accepted() {
         ["fit", "leaf.csv", "--model", "bands", "--robust", "--start-n", "2", "--start-sigma", "0.8", "--starts", "1"];
     let output = run(folder.path(), &[&arguments[..], &["-o", "out"]].concat());
     assert!(output.status.success(), "{}", stderr(&output));
-    for row in table(&folder.path().join("out/bands.csv")) {
+    for row in rows(&folder.path().join("out/bands.csv")) {
         assert!((number(&row, "n") - 1.5).abs() < 1e-6, "{row:?}");
         assert_eq!(row["starts"], "2");
     }

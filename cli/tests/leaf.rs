@@ -1,14 +1,12 @@
 //! The coupled leaf as its user meets it: `leafbrdf leaf --points`, and `leafbrdf fit --model leaf`.
 
+mod common;
+
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
+use common::leafbrdf;
 use leafbrdf::points::Points;
-
-fn leafbrdf(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_leafbrdf")).args(arguments).output().unwrap()
-}
 
 /// The table that a successful run prints, and what it says on standard error.
 #[track_caller]
@@ -22,13 +20,7 @@ fn table(arguments: &[&str]) -> (Points, String) {
 /// The run ends with this status and a message on standard error that has these parts.
 #[track_caller]
 fn fails(arguments: &[&str], status: i32, parts: &[&str]) {
-    let output = leafbrdf(arguments);
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {message}");
-    assert!(output.stdout.is_empty(), "{arguments:?}: no results are printed on failure");
-    for part in parts {
-        assert!(message.contains(part), "{arguments:?}: no {part:?} in: {message}");
-    }
+    common::fails(arguments, "", status, parts);
 }
 
 /// The golden file of the crate `prospect`; its first lines say what made it.

@@ -1,14 +1,12 @@
 //! `leafbrdf plot` and `fit --plots` as their user runs them: figures out of a fit's folder.
 
+mod common;
+
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
+use common::leafbrdf;
 use leafbrdf::measurement::{ReadOptions, read_path};
-
-fn leafbrdf(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_leafbrdf")).args(arguments).output().unwrap()
-}
 
 fn succeed(arguments: &[&str]) -> String {
     let output = leafbrdf(arguments);

@@ -2,51 +2,15 @@
 //!
 //! The golden file is that of the crate `prospect`; what made it is said in its `tests/golden.rs`.
 
+mod common;
+
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
 
+use common::{fails, leafbrdf_with, table_with};
 use leafbrdf::points::Points;
-
-fn leafbrdf_with(arguments: &[&str], input: &[u8]) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_leafbrdf"))
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut stdin = child.stdin.take().unwrap();
-    let input = input.to_vec();
-    let writer = std::thread::spawn(move || stdin.write_all(&input));
-    let output = child.wait_with_output().unwrap();
-    // A command that does not read its input closes it early.
-    let _ = writer.join();
-    output
-}
-
-/// The table that a successful run prints.
-#[track_caller]
-fn table(arguments: &[&str], input: &str) -> Points {
-    let output = leafbrdf_with(arguments, input.as_bytes());
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    Points::from_bytes("output", &output.stdout).unwrap()
-}
-
-/// The run ends with this status and a message on standard error that has these parts.
-#[track_caller]
-fn fails(arguments: &[&str], input: &str, status: i32, parts: &[&str]) {
-    let output = leafbrdf_with(arguments, input.as_bytes());
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {message}");
-    assert!(output.stdout.is_empty(), "{arguments:?}: no results are printed on failure");
-    for part in parts {
-        assert!(message.contains(part), "{arguments:?}: no {part:?} in: {message}");
-    }
-}
 
 fn golden() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../prospect/tests/golden/prospect_reference.csv")
@@ -67,7 +31,7 @@ const INPUTS: [&str; 9] = ["n_struct", "cab", "car", "cant", "cbrown", "cw", "cm
 fn spectra_agree_with_the_golden_file_through_the_command() {
     let path = golden();
     let reference = Points::read(&path).unwrap();
-    let ours = table(&["prospect", "--points", path.to_str().unwrap(), "--wavelengths", "400:2500:10"], "");
+    let ours = table_with(&["prospect", "--points", path.to_str().unwrap(), "--wavelengths", "400:2500:10"], "");
     let key = |points: &Points, row: usize, numbers: &[f64]| {
         let version = points.text(row, points.require("version").unwrap()).to_string();
         (version, numbers[..10].iter().map(|number| (number + 0.0).to_bits()).collect::<Vec<u64>>())
@@ -108,7 +72,7 @@ fn an_omitted_constituent_is_zero_and_energy_is_conserved() {
     let omitted = leafbrdf_with(&arguments, b"");
     assert_eq!(given.stdout, omitted.stdout);
     let names = ["reflectance", "transmittance", "absorptance"];
-    for row in columns(&table(&["prospect", "--n-struct", "1.7", "--cab", "40", "--cw", "0.01"], ""), &names) {
+    for row in columns(&table_with(&["prospect", "--n-struct", "1.7", "--cab", "40", "--cw", "0.01"], ""), &names) {
         // one rounding of each
         assert!((row.iter().sum::<f64>() - 1.0).abs() < 1e-14);
     }
@@ -118,7 +82,7 @@ fn an_omitted_constituent_is_zero_and_energy_is_conserved() {
 fn wavelengths_come_in_the_order_asked_for_and_between_the_tables_interpolated() {
     let names = ["wavelength_nm", "reflectance"];
     let leaf = ["prospect", "--n-struct", "1.5", "--cab", "40", "--cm", "0.005"];
-    let at = |list: &str| columns(&table(&[&leaf[..], &["--wavelengths", list]].concat(), ""), &names);
+    let at = |list: &str| columns(&table_with(&[&leaf[..], &["--wavelengths", list]].concat(), ""), &names);
     let rows = at("800,550,550.5,551,800");
     let order: Vec<f64> = rows.iter().map(|row| row[0]).collect();
     assert_eq!(order, [800.0, 550.0, 550.5, 551.0, 800.0]);
@@ -130,11 +94,13 @@ fn wavelengths_come_in_the_order_asked_for_and_between_the_tables_interpolated()
 #[test]
 fn a_sensor_band_averages_the_spectrum() {
     let leaf = ["prospect", "--n-struct", "1.5", "--cab", "40", "--cm", "0.005"];
-    let bands = table(&[&leaf[..], &["--bands", "705:15,1100:2"]].concat(), "");
+    let bands = table_with(&[&leaf[..], &["--bands", "705:15,1100:2"]].concat(), "");
     let rows = columns(&bands, &["wavelength_nm", "reflectance", "fwhm_nm"]);
     assert_eq!((rows[0][0], rows[0][2], rows.len()), (705.0, 15.0, 2));
-    let fine =
-        columns(&table(&[&leaf[..], &["--wavelengths", "650:760"]].concat(), ""), &["wavelength_nm", "reflectance"]);
+    let fine = columns(
+        &table_with(&[&leaf[..], &["--wavelengths", "650:760"]].concat(), ""),
+        &["wavelength_nm", "reflectance"],
+    );
     let weight = |nm: f64| (-4.0 * std::f64::consts::LN_2 * ((nm - 705.0) / 15.0).powi(2)).exp();
     let sum: f64 = fine.iter().map(|row| weight(row[0]) * row[1]).sum();
     let mean = sum / fine.iter().map(|row| weight(row[0])).sum::<f64>();
@@ -185,7 +151,7 @@ pale,D,1.2,9,4,0.5,0.1,0.006,0.0035
 /// A file of spectra of several samples, simulated by the command.
 fn simulated(leaves: &str, wavelengths: &str, columns: &[&str]) -> String {
     let points = Points::from_bytes("leaves", leaves.as_bytes()).unwrap();
-    let spectra = table(&["prospect", "--points", "-", "--wavelengths", wavelengths], leaves);
+    let spectra = table_with(&["prospect", "--points", "-", "--wavelengths", wavelengths], leaves);
     let bands = spectra.len() / points.len();
     let mut text = format!("# species: simulated\nsample,wavelength_nm,{}\n", columns.join(","));
     for (row, numbers) in self::columns(&spectra, &[&["wavelength_nm"], columns].concat()).iter().enumerate() {
@@ -224,7 +190,7 @@ impl Folder {
         (output.status.code(), String::from_utf8(output.stderr).unwrap())
     }
 
-    fn table(&self, name: &str) -> Points {
+    fn table_with(&self, name: &str) -> Points {
         Points::read(Path::new(&self.path(name))).unwrap()
     }
 
@@ -247,7 +213,7 @@ fn leaves_come_back_through_files() {
         let folder = Folder::new(&[("sphere.csv", &simulated(LEAVES, wavelengths, measured))]);
         let (status, message) = folder.fit(&["sphere.csv"], &[]);
         assert_eq!(status, Some(0), "{message}");
-        let leaves = folder.table("out/leaves.csv");
+        let leaves = folder.table_with("out/leaves.csv");
         for (row, (found, truth)) in columns(&leaves, &names).iter().zip(&truth).enumerate() {
             assert_eq!(leaves.text(row, leaves.require("leaf").unwrap()), ["green", "thick", "pale"][row]);
             assert_eq!(leaves.text(row, leaves.require("status").unwrap()), "done");
@@ -256,7 +222,7 @@ fn leaves_come_back_through_files() {
                 assert!((found / truth - 1.0).abs() < 1e-8, "{name} {found} {truth} from {measured:?}");
             }
         }
-        let spectrum = folder.table("out/green/spectrum.csv");
+        let spectrum = folder.table_with("out/green/spectrum.csv");
         let modelled = format!("{}_modelled", measured[0]);
         for pair in columns(&spectrum, &[measured[0], &modelled]) {
             assert!((pair[0] - pair[1]).abs() < 1e-10);
@@ -281,7 +247,7 @@ fn the_columns_of_the_files_are_those_of_the_contract() {
         first("out/thick/spectrum.csv"),
         "wavelength_nm,reflectance,transmittance,reflectance_modelled,transmittance_modelled"
     );
-    let leaves = folder.table("out/leaves.csv");
+    let leaves = folder.table_with("out/leaves.csv");
     for empty in ["normalization", "n", "sigma", "tilt_lateral_deg", "prot", "cbc"] {
         assert_eq!(leaves.text(0, leaves.require(empty).unwrap()), "", "{empty}");
     }
@@ -294,7 +260,7 @@ fn held_tied_and_split_parameters_are_told_apart() {
     let more = ["--prospect", "pro", "--car-per-cab", "0.25", "--fix", "cant=0,cbrown=0"];
     let (status, message) = folder.fit(&["a.csv"], &more);
     assert_eq!(status, Some(0), "{message}");
-    let leaves = folder.table("out/leaves.csv");
+    let leaves = folder.table_with("out/leaves.csv");
     let row = &columns(&leaves, &["n_struct", "cab", "car", "cant", "cm", "prot", "cbc"])[0];
     for (found, truth) in row.iter().zip([1.6, 40.0, 10.0, 0.0, 0.006, 0.001, 0.005]) {
         assert!((found - truth).abs() <= 1e-8 * truth, "{row:?}");
@@ -316,7 +282,7 @@ fn the_prior_of_n_is_held_where_there_is_no_transmittance() {
     assert_eq!(summary["parameters"]["n_struct"]["how"], "from the plateau, held");
     assert!(summary["n_prior"]["standard_deviation"].as_f64().unwrap() > 0.01);
     // the ordinary leaf of the prior: N to the precision of its bisection, and with it everything else
-    let row = &columns(&folder.table("out/leaves.csv"), &["n_struct", "cab"])[0];
+    let row = &columns(&folder.table_with("out/leaves.csv"), &["n_struct", "cab"])[0];
     assert!((row[0] - 1.8).abs() < 1e-6 && (row[1] - 40.0).abs() < 1e-3, "{row:?}");
 }
 
@@ -369,7 +335,7 @@ fn every_rule_of_spectra_files_has_its_message() {
             assert!(message.contains(part), "no {part:?} in: {message}");
         }
         assert!(!Path::new(&folder.path("out/summary.json")).exists());
-        let leaves = folder.table("out/leaves.csv");
+        let leaves = folder.table_with("out/leaves.csv");
         assert_eq!(leaves.text(0, leaves.require("status").unwrap()), "failed");
     };
     let head = "wavelength_nm,reflectance\n";
@@ -404,7 +370,7 @@ fn one_leaf_that_fails_stops_no_other_and_no_name_is_used_twice() {
     let (status, message) = folder.fit(&["a.csv", "bad.csv", "again.csv"], &["--threads", "2"]);
     assert_eq!(status, Some(1));
     assert!(message.contains("4 of 7 leaves failed") && message.contains("would overwrite"), "{message}");
-    let leaves = folder.table("out/leaves.csv");
+    let leaves = folder.table_with("out/leaves.csv");
     let status: Vec<&str> = (0..leaves.len()).map(|row| leaves.text(row, 1)).collect();
     assert_eq!(status, ["done", "done", "done", "failed", "failed", "failed", "failed"]);
 }

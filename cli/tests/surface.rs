@@ -1,11 +1,12 @@
 //! `leafbrdf fit --model surface` as its user runs it: files in, files out, messages, exit status.
 
-use std::collections::HashMap;
+mod common;
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
+use common::{number, rows, run, stderr};
 use leafbrdf_core::diffuse::{Diffuse, P1};
 use leafbrdf_core::{Angle, Grade, Illumination, Leaf, Normalization, Surface, Tilt};
 
@@ -47,22 +48,6 @@ fn wide(extended: bool, plane: bool, gap: bool) -> String {
     text
 }
 
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_leafbrdf")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-fn table(path: &Path) -> Vec<HashMap<String, String>> {
-    csv::Reader::from_path(path).unwrap().deserialize().collect::<Result<_, _>>().unwrap()
-}
-
-fn number(row: &HashMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap_or_else(|_| panic!("{column}: {:?}", row[column]))
-}
-
 fn summary(folder: &Path) -> serde_json::Value {
     serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap()
 }
@@ -75,7 +60,7 @@ fn an_exact_leaf_gives_back_its_surface_and_every_k_l() {
     assert!(output.status.success(), "{}", stderr(&output));
     let out = folder.path().join("out");
 
-    let bands = table(&out.join("bands.csv"));
+    let bands = rows(&out.join("bands.csv"));
     assert_eq!(bands.len(), BANDS.len());
     for (row, (wavelength, k_l)) in bands.iter().zip(BANDS) {
         assert_eq!(number(row, "wavelength_nm"), f64::from(wavelength));
@@ -88,11 +73,11 @@ fn an_exact_leaf_gives_back_its_surface_and_every_k_l() {
     }
     let source = Illumination::new(DEG(40.0)).unwrap();
     let specular = Surface::new(1.5, 0.25).unwrap().dhrf(&source, Grade::E10);
-    for (row, (_, k_l)) in table(&out.join("dhrf.csv")).iter().zip(BANDS) {
+    for (row, (_, k_l)) in rows(&out.join("dhrf.csv")).iter().zip(BANDS) {
         assert!((number(row, "dhrf_diffuse") - k_l).abs() < 1e-7);
         assert!((number(row, "dhrf_specular") - specular).abs() < 1e-7);
     }
-    let leaves = table(&out.join("leaves.csv"));
+    let leaves = rows(&out.join("leaves.csv"));
     assert_eq!((leaves[0]["leaf"].as_str(), leaves[0]["model"].as_str()), ("laurel", "surface"));
     assert_eq!(leaves[0]["tilt_in_plane_deg"], "");
     let summary = summary(&out);
@@ -108,7 +93,7 @@ fn the_extended_surface_is_named_with_its_convention_and_its_budget() {
     let output = run(folder.path(), &ask);
     assert!(output.status.success(), "{}", stderr(&output));
     let out = folder.path().join("out");
-    let leaf = &table(&out.join("leaves.csv"))[0];
+    let leaf = &rows(&out.join("leaves.csv"))[0];
     for (column, truth) in [
         ("n", 1.48),
         ("sigma", 0.22),
@@ -122,7 +107,7 @@ fn the_extended_surface_is_named_with_its_convention_and_its_budget() {
     assert_eq!((leaf["facets"].as_str(), leaf["diffuse"].as_str()), ("ggx", "p1"));
     // GGX has no printed convention: it comes normalised, and says so
     assert_eq!(leaf["normalization"], "cook-torrance");
-    let row = &table(&out.join("dhrf.csv"))[3];
+    let row = &rows(&out.join("dhrf.csv"))[3];
     let source = Illumination::new(DEG(40.0)).unwrap();
     let specular = Surface::ggx(1.48, 0.22).unwrap().dhrf(&source, Grade::E10);
     let diffuse = 0.44 * P1::new(0.15, -0.05).unwrap().hemispherical(DEG(40.0).cos());
@@ -135,7 +120,7 @@ fn the_extended_surface_is_named_with_its_convention_and_its_budget() {
     // an explicit convention is honoured: a smaller factor asks for a larger index
     let output = run(folder.path(), &[&ask[..9], &["--normalization", "bousquet2005", "-o", "other"]].concat());
     assert!(output.status.success(), "{}", stderr(&output));
-    let other = &table(&folder.path().join("other/leaves.csv"))[0];
+    let other = &rows(&folder.path().join("other/leaves.csv"))[0];
     assert_eq!(other["normalization"], Normalization::Bousquet2005.name());
     assert!(number(other, "n") > 1.5);
 }
@@ -148,7 +133,7 @@ fn a_lateral_tilt_that_the_plane_of_incidence_cannot_see_is_held_and_told() {
     let output = run(folder.path(), &ask);
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(stderr(&output).contains("tilt_lateral_deg is held at 0"), "{}", stderr(&output));
-    let leaf = &table(&folder.path().join("out/leaves.csv"))[0];
+    let leaf = &rows(&folder.path().join("out/leaves.csv"))[0];
     assert_eq!((leaf["tilt_lateral_deg"].as_str(), leaf["tilt_lateral_deg_se"].as_str()), ("", ""));
     assert!((number(leaf, "tilt_in_plane_deg") - 1.5).abs() < 1e-6);
     assert!(summary(&folder.path().join("out"))["warnings"].to_string().contains("tilt_lateral_deg"));
@@ -161,7 +146,7 @@ fn parameters_can_be_held_and_priors_given() {
     let fit =
         |more: &[&str]| run(folder.path(), &[&["fit", "leaf.csv", "--model", "surface", "-o", "out"], more].concat());
     assert!(fit(&["--hold", "n=1.4"]).status.success());
-    let leaf = &table(&folder.path().join("out/leaves.csv"))[0];
+    let leaf = &rows(&folder.path().join("out/leaves.csv"))[0];
     assert_eq!((leaf["n"].as_str(), leaf["n_se"].as_str()), ("1.4", ""));
     assert!(fit(&["--prior", "n=1.48:0.03"]).status.success());
     for (wrong, word) in [
@@ -186,7 +171,7 @@ fn a_leaf_that_fails_is_named_and_the_others_are_done() {
     let output = run(folder.path(), &["fit", "good.csv", "bad.csv", "--model", "surface", "-o", "out"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(stderr(&output).contains("bad.csv"));
-    let leaves = table(&folder.path().join("out/leaves.csv"));
+    let leaves = rows(&folder.path().join("out/leaves.csv"));
     assert_eq!((leaves[0]["status"].as_str(), leaves[1]["status"].as_str()), ("done", "failed"));
     assert!(folder.path().join("out/good/summary.json").exists());
 }
