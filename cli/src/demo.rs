@@ -31,8 +31,8 @@ use leafbrdf_fit::{BandBounds, BandOptions, LeafBandsOptions};
 use leafbrdf_prospect::Parameter;
 
 use crate::fit::{
-    FitFailure, LeafOutcome, LeafRow, Selected, Selection, Summary, fit_bands, fit_leaf, fit_surface, write_bands,
-    write_leaves, write_records,
+    FitFailure, LeafOutcome, LeafValues, Selected, Selection, Summary, fit_bands, fit_leaf, fit_surface, write_bands,
+    write_records,
 };
 use crate::measurement::{
     Measurement, Metadata, ReadError, ReadOptions, WriteError, WriteOptions, read_path, write_path,
@@ -161,11 +161,11 @@ pub fn run(folder: &Path) -> Result<Study, DemoError> {
                 joint: FiveParameters::new(&five[1].fit),
                 integrated: study::integrated(&measured, &leaf)?,
             });
-            rows.push(LeafRow { leaf: measured.name, file: file.clone(), result: Ok(summary) });
+            rows.push((measured.name, file.clone(), Ok(LeafValues::from(&summary))));
         }
     }
     let convention = Normalization::Bousquet2005.name();
-    write_leaves(&fit, "bands", convention, &rows).map_err(in_file(&fit.join("leaves.csv")))?;
+    write_records(&fit, "bands", Some(convention), &rows).map_err(in_file(&fit.join("leaves.csv")))?;
     for ((place, model), records) in [(&surface, "surface"), (&two_step, "leaf"), (&joint, "leaf")].iter().zip(&records)
     {
         write_records(place, model, Some(convention), records).map_err(in_file(&place.join("leaves.csv")))?;

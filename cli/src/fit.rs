@@ -9,18 +9,21 @@
 //! | `leaf` | surface and interior of the whole leaf |
 //! | `summary` | `summary.json`: the leaf as a whole, and what the user should be warned of |
 //! | `leaves` | `leaves.csv`: one row a leaf |
+//! | `tables`, `json` | what the models' `bands.csv`, `dhrf.csv` and `summary.json` have in common |
 
 mod bands;
+mod json;
 mod leaf;
 mod leaves;
 mod prospect;
 mod select;
 mod summary;
 mod surface;
+mod tables;
 
 pub use bands::{BandsOutcome, fit_bands, write_bands};
 pub use leaf::{LeafOutcome, fit_leaf};
-pub use leaves::{LeafRecord, LeafRow, LeafValues, write_leaves, write_records};
+pub use leaves::{LeafRecord, LeafValues, write_records};
 pub use prospect::{ProspectOptions, ProspectOutcome, fit_prospect};
 pub use select::{Selected, Selection, WavelengthRange};
 pub use summary::Summary;

@@ -1,24 +1,20 @@
 //! `leafbrdf fit`: the main job, inversion of measured leaf BRDF; and of hemispherical spectra.
 
 mod leaf;
+mod leaves;
 mod prospect;
 mod surface;
 
-use std::collections::HashMap;
-use std::fs;
-use std::io::{self, IsTerminal, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use leafbrdf::fit::{LeafRow, Selected, Selection, Summary, WavelengthRange, fit_bands, write_bands, write_leaves};
-use leafbrdf::measurement::{Azimuth, Measurement, Quantity, ReadOptions, read_path};
-use leafbrdf::output::file_name;
+use indicatif::ProgressBar;
+use leafbrdf::fit::{LeafValues, Summary, WavelengthRange, fit_bands, write_bands};
+use leafbrdf::measurement::{Azimuth, Measurement, Quantity, ReadOptions};
 use leafbrdf::plot::PlotOptions;
 use leafbrdf_core::Normalization;
 use leafbrdf_fit::{BandBounds, BandOptions, Interval, LeafBandsOptions, Start, band::Weights};
-use rayon::prelude::*;
 
 use super::{Failure, NormalizationName};
 
@@ -211,179 +207,34 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     fitted
 }
 
-/// The folder for the results, and the threads that work on them.
-fn prepare(arguments: &Arguments) -> Result<rayon::ThreadPool, Failure> {
-    fs::create_dir_all(&arguments.output).map_err(|error| Failure::writing(Some(&arguments.output), &error))?;
-    let threads = usize::from(arguments.threads.unwrap_or(0));
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|error| Failure::Failed(format!("threads: {error}")))
-}
-
 fn bands(arguments: &Arguments) -> Result<(), Failure> {
     let options = arguments.options()?;
     arguments.prospect.refuse()?;
     arguments.surface.refuse("bands")?;
     arguments.leaf.refuse("bands")?;
-    let pool = prepare(arguments)?;
-    let bar = progress_bar("bands");
-    let leaves = read(arguments);
-    let several = leaves.len() > 1;
-    bar.set_length(leaves.iter().filter_map(|leaf| Some(leaf.data.as_ref().ok()?.wavelengths_nm.len() as u64)).sum());
-
-    let rows: Vec<LeafRow> = pool.install(|| {
-        leaves
-            .par_iter()
-            .map(|leaf| LeafRow {
-                leaf: leaf.name.clone(),
-                file: leaf.file.clone(),
-                result: leaf.data.as_ref().map_err(Clone::clone).and_then(|data| {
-                    let folder =
-                        if several { arguments.output.join(file_name(&leaf.name)) } else { arguments.output.clone() };
-                    one_leaf(data, leaf, arguments, &options, &folder, &bar)
-                }),
-            })
-            .collect()
-    });
-    bar.finish_and_clear();
-
-    let convention = arguments.normalization().name();
-    write_leaves(&arguments.output, "bands", convention, &rows)
-        .map_err(|error| Failure::writing(Some(&arguments.output.join("leaves.csv")), &error))?;
-    report(&rows)
-}
-
-/// One leaf of the input, or why there is none.
-struct Input {
-    name: String,
-    file: String,
-    data: Result<Measurement, String>,
-}
-
-/// All leaves of all files, each under a name of its own; a file that cannot be read is one failed leaf.
-fn read(arguments: &Arguments) -> Vec<Input> {
-    let options = ReadOptions { quantity: arguments.quantity, azimuth: arguments.azimuth };
-    let mut inputs = Vec::new();
-    let mut places: HashMap<String, String> = HashMap::new();
-    for path in &arguments.files {
-        let file = path.display().to_string();
-        match read_path(path, &options) {
-            Ok(leaves) => inputs.extend(leaves.into_iter().map(|leaf| {
-                let name = leaf.name.clone();
-                let folder = file_name(&name);
-                let data = match places.get(&folder) {
-                    Some(other) => Err(format!(
-                        "{file}: leaf {} has the name of one in {other}, whose results it would overwrite: give one of them \
-                         another file name or `# sample:`",
-                        leaf.name
-                    )),
-                    None => Ok(leaf),
-                };
-                places.entry(folder).or_insert_with(|| file.clone());
-                Input { name, file: file.clone(), data }
-            })),
-            Err(error) => {
-                let name = path.file_stem().map_or_else(|| file.clone(), |stem| stem.to_string_lossy().into_owned());
-                inputs.push(Input { name, file, data: Err(error.to_string()) });
-            }
-        }
-    }
-    inputs
-}
-
-fn one_leaf(
-    data: &Measurement,
-    input: &Input,
-    arguments: &Arguments,
-    options: &LeafBandsOptions,
-    folder: &Path,
-    bar: &ProgressBar,
-) -> Result<Summary, String> {
-    let named = |sentence: String| format!("{}: leaf {}: {sentence}", input.file, input.name);
-    let selection = Selection {
-        wavelengths: arguments.wavelengths,
-        max_theta_v_deg: arguments.max_theta_v,
-        use_sd: !arguments.ignore_sd,
+    let model = leaves::Model {
+        name: "bands",
+        normalization: Some(arguments.normalization().name()),
+        bands: Some(|leaf: &Measurement| leaf.wavelengths_nm.len()),
     };
-    let selected = Selected::new(data, &selection).map_err(|failure| named(failure.to_string()))?;
-    let mut options = options.clone();
-    if selected.sd.is_some() {
-        options.band.weights = Weights::Absolute;
-    }
-    let outcome =
-        fit_bands(selected, &options, &|bands| bar.inc(bands as u64)).map_err(|failure| named(failure.to_string()))?;
-    let summary = Summary::of_bands(data, &input.file, &outcome);
-    fs::create_dir_all(folder)
-        .and_then(|()| write_bands(folder, &outcome))
-        .and_then(|()| summary.write(folder))
-        .map_err(|error| format!("{}: cannot be written: {error}", folder.display()))?;
-    Ok(summary)
-}
-
-/// Results, warnings and failures of leaves, by name, on standard error; failure of the command where a leaf has failed.
-/// `line` and `warnings` are what there is to say of one that has not.
-fn report_leaves<O>(
-    leaves: &[(&str, &Result<O, String>)],
-    line: impl Fn(&O) -> String,
-    warnings: impl Fn(&O) -> &[String],
-) -> Result<(), Failure> {
-    let mut errors = io::stderr().lock();
-    let mut failed = 0;
-    for (name, result) in leaves {
-        // Messages are a courtesy: where standard error is closed, the files are what was asked for.
-        let _ = match result {
-            Ok(outcome) => {
-                let _ = writeln!(errors, "{name}: {}", line(outcome));
-                warnings(outcome).iter().try_for_each(|warning| writeln!(errors, "warning: {name}: {warning}"))
-            }
-            Err(sentence) => {
-                failed += 1;
-                writeln!(errors, "error: {sentence}")
-            }
-        };
-    }
-    match failed {
-        0 => Ok(()),
-        _ => Err(Failure::Failed(format!("{failed} of {} leaves failed, the others are done", leaves.len()))),
-    }
-}
-
-/// Warnings and failures on standard error; failure of the command where a leaf has failed.
-fn report(rows: &[LeafRow]) -> Result<(), Failure> {
-    let mut errors = io::stderr().lock();
-    let mut failed = 0;
-    for row in rows {
-        match &row.result {
-            Ok(summary) => {
-                let line = format!(
-                    "{}: {} bands, mean n {:.4}, mean sigma {:.4}, rmse {:.3e} sr^-1, R2 {:.4}",
-                    row.leaf, summary.fitted, summary.n, summary.sigma, summary.rmse, summary.r2
-                );
-                // Messages are a courtesy: where standard error is closed, the files are what was asked for.
-                let _ = writeln!(errors, "{line}");
-                for warning in &summary.warnings {
-                    let _ = writeln!(errors, "warning: {}: {warning}", row.leaf);
-                }
-            }
-            Err(sentence) => {
-                failed += 1;
-                let _ = writeln!(errors, "error: {sentence}");
-            }
+    let fit = |data: &Measurement, bar: &ProgressBar| {
+        let selected = leaves::selected(data, arguments)?;
+        let mut options = options.clone();
+        if selected.sd.is_some() {
+            options.band.weights = Weights::Absolute;
         }
-    }
-    match failed {
-        0 => Ok(()),
-        _ => Err(Failure::Failed(format!("{failed} of {} leaves failed, the others are done", rows.len()))),
-    }
-}
-
-/// On standard error, and only on a terminal.
-fn progress_bar(of: &str) -> ProgressBar {
-    if !io::stderr().is_terminal() {
-        return ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-    }
-    let style = ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {of} {{eta}}"))
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(0).with_style(style)
+        fit_bands(selected, &options, &|bands| bar.inc(bands as u64)).map_err(|failure| failure.to_string())
+    };
+    leaves::each(
+        arguments,
+        &model,
+        || leaves::measurements(arguments),
+        fit,
+        |outcome, folder, data, file| {
+            let summary = Summary::of_bands(data, file, &outcome);
+            write_bands(folder, &outcome)?;
+            summary.write(folder)?;
+            Ok((LeafValues::from(&summary), summary.line()))
+        },
+    )
 }

@@ -7,6 +7,7 @@ use leafbrdf_core::{Angle, Grade, Illumination, Normalization, Surface};
 use leafbrdf_fit::{AtBound, BandFit, BandResult, LeafBandsOptions, LeafData, why_no_error};
 use rayon::prelude::*;
 
+use super::tables::{self, BAND_COLUMNS, Budget, write_budgets};
 use super::{FitFailure, Selected};
 use crate::output::{Cell, Format, TableWriter};
 
@@ -20,16 +21,7 @@ pub struct BandsOutcome {
     /// The convention for K.
     pub normalization: Normalization,
     /// DHRF of each wavelength and source angle, wavelength by wavelength.
-    dhrf: Vec<Dhrf>,
-}
-
-/// DHRF_diff, DHRF_spec and the standard error of the latter, at one wavelength and θ_s.
-#[derive(Clone, Copy, Debug)]
-struct Dhrf {
-    theta_s_deg: f64,
-    diffuse: f64,
-    specular: f64,
-    specular_se: f64,
+    dhrf: Vec<Budget>,
 }
 
 /// Fits every band of the selected data, and integrates each result over the hemisphere for every θ_s of the data.
@@ -57,8 +49,8 @@ pub fn fit_bands(
     Ok(BandsOutcome { selected, bands, normalization: options.normalization, dhrf })
 }
 
-fn dhrf(band: &BandResult, theta_s_deg: f64, source: &Illumination<f64>, normalization: Normalization) -> Dhrf {
-    let nothing = Dhrf { theta_s_deg, diffuse: f64::NAN, specular: f64::NAN, specular_se: f64::NAN };
+fn dhrf(band: &BandResult, theta_s_deg: f64, source: &Illumination<f64>, normalization: Normalization) -> Budget {
+    let nothing = Budget { theta_s_deg, diffuse: f64::NAN, specular: f64::NAN, specular_se: f64::NAN };
     let Some(fit) = band else { return nothing };
     let [k_l, n, sigma] = fit.parameters;
     let Ok(surface) = Surface::new(n, sigma) else { return nothing };
@@ -70,7 +62,7 @@ fn dhrf(band: &BandResult, theta_s_deg: f64, source: &Illumination<f64>, normali
     let cross = 2.0 * fit.correlations[2].unwrap_or(0.0) * n_part * sigma_part;
     let error = (n_part * n_part + sigma_part * sigma_part + cross).max(0.0).sqrt();
     let specular_se = if unknown { f64::NAN } else { error };
-    Dhrf { theta_s_deg, diffuse: k_l, specular: gradient.value, specular_se }
+    Budget { theta_s_deg, diffuse: k_l, specular: gradient.value, specular_se }
 }
 
 /// Names of k_L, n, σ in files.
@@ -85,16 +77,6 @@ pub(super) fn status(band: &BandResult) -> &'static str {
     }
 }
 
-/// `sigma=upper;k_l=lower`, or nothing.
-fn at_bound(fit: &BandFit<f64>) -> String {
-    let places = PARAMETERS.iter().zip(fit.at_bound).filter_map(|(name, at)| match at {
-        AtBound::Free => None,
-        AtBound::Lower => Some(format!("{name}=lower")),
-        AtBound::Upper => Some(format!("{name}=upper")),
-    });
-    places.collect::<Vec<_>>().join(";")
-}
-
 /// Why standard errors are missing, parameter by parameter, or nothing.
 fn note(fit: &BandFit<f64>) -> String {
     let reasons =
@@ -107,18 +89,7 @@ fn note(fit: &BandFit<f64>) -> String {
 /// # Errors
 /// The system's.
 pub fn write_bands(folder: &Path, outcome: &BandsOutcome) -> io::Result<()> {
-    let columns = [
-        "wavelength_nm",
-        "k_l",
-        "n",
-        "sigma",
-        "rmse",
-        "n_obs",
-        "status",
-        "at_bound",
-        "k_l_se",
-        "n_se",
-        "sigma_se",
+    let others = [
         "corr_k_l_n",
         "corr_k_l_sigma",
         "corr_n_sigma",
@@ -132,6 +103,7 @@ pub fn write_bands(folder: &Path, outcome: &BandsOutcome) -> io::Result<()> {
         "note",
         "normalization",
     ];
+    let columns = [&BAND_COLUMNS[..], &others].concat();
     let mut table = TableWriter::create(Some(&folder.join("bands.csv")), Some(Format::Csv), &columns)?;
     let convention = Cell::Text(outcome.normalization.name());
     for (place, (wavelength, band)) in outcome.selected.wavelengths_nm.iter().zip(&outcome.bands).enumerate() {
@@ -145,7 +117,7 @@ pub fn write_bands(folder: &Path, outcome: &BandsOutcome) -> io::Result<()> {
                 row.push(Cell::Text("fewer than 3 values: nothing can be fitted"));
             }
             Some(fit) => {
-                at_bound = self::at_bound(fit);
+                at_bound = tables::at_bound(PARAMETERS.into_iter().zip(fit.at_bound));
                 note = self::note(fit);
                 row.extend(fit.parameters.map(Cell::Number));
                 row.extend([
@@ -153,15 +125,15 @@ pub fn write_bands(folder: &Path, outcome: &BandsOutcome) -> io::Result<()> {
                     Cell::Count(fit.n_obs as u64),
                 ]);
                 row.extend([Cell::Text(status(band)), Cell::Text(&at_bound)]);
-                row.extend(fit.standard_errors.map(optional));
-                row.extend(fit.correlations.map(optional));
+                row.extend(fit.standard_errors.map(Cell::or_empty));
+                row.extend(fit.correlations.map(Cell::or_empty));
                 row.extend([
                     Cell::Number(fit.chi2),
                     Cell::Count(fit.iterations.into()),
                     Cell::Count(fit.starts.into()),
                 ]);
-                row.push(optional(fit.second.map(|second| second.chi2)));
-                row.extend((0..3).map(|p| optional(fit.second.map(|second| second.parameters[p]))));
+                row.push(Cell::or_empty(fit.second.map(|second| second.chi2)));
+                row.extend((0..3).map(|p| Cell::or_empty(fit.second.map(|second| second.parameters[p]))));
                 row.push(Cell::Text(&note));
             }
         }
@@ -170,33 +142,10 @@ pub fn write_bands(folder: &Path, outcome: &BandsOutcome) -> io::Result<()> {
     }
     table.finish()?;
 
-    let columns = [
-        "wavelength_nm",
-        "theta_s_deg",
-        "dhrf_diffuse",
-        "dhrf_specular",
-        "dhrf",
-        "dhrf_specular_se",
-        "specular_share",
-        "normalization",
-    ];
-    let mut table = TableWriter::create(Some(&folder.join("dhrf.csv")), Some(Format::Csv), &columns)?;
     let sources = outcome.dhrf.len() / outcome.bands.len().max(1);
-    for (wavelength, rows) in outcome.selected.wavelengths_nm.iter().zip(outcome.dhrf.chunks(sources.max(1))) {
-        for row in rows {
-            let total = row.diffuse + row.specular;
-            let numbers =
-                [*wavelength, row.theta_s_deg, row.diffuse, row.specular, total, row.specular_se, row.specular / total];
-            let mut cells: Vec<Cell<'_>> = numbers.map(Cell::Number).to_vec();
-            cells.push(convention);
-            table.row(&cells)?;
-        }
-    }
-    table.finish()
-}
-
-fn optional(number: Option<f64>) -> Cell<'static> {
-    number.map_or(Cell::Empty, Cell::Number)
+    let rows = outcome.selected.wavelengths_nm.iter().zip(outcome.dhrf.chunks(sources.max(1)));
+    let rows = rows.flat_map(|(nm, budgets)| budgets.iter().map(|budget| (*nm, *budget)));
+    write_budgets(folder, outcome.normalization, rows)
 }
 
 impl BandsOutcome {

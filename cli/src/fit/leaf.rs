@@ -15,9 +15,9 @@ use leafbrdf_fit::surface::model::{
 };
 use leafbrdf_prospect::{Coupling, Parameter, Version, table};
 
+use super::tables::{self, Band, Budget, OneSurface, write_bands, write_budgets};
 use super::{FitFailure, LeafValues, Selected};
 use crate::measurement::Measurement;
-use crate::output::{Cell, Format, TableWriter};
 
 /// One leaf, inverted.
 #[derive(Clone, Debug)]
@@ -31,15 +31,7 @@ pub struct LeafOutcome {
     /// What the user should know before using the numbers.
     pub warnings: Vec<String>,
     /// DHRF_spec, its standard error, and the diffuse term's DHRF for k_L = 1, at every source angle.
-    dhrf: Vec<Dhrf>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Dhrf {
-    theta_s_deg: f64,
-    specular: f64,
-    specular_se: f64,
-    diffuse: f64,
+    dhrf: Vec<Budget>,
 }
 
 /// Inverts the selected data.
@@ -152,9 +144,9 @@ impl LeafOutcome {
     }
 
     /// DHRF at θ_s from the leaf's own normal: a tilt in the holder has no part in it.
-    fn budget(&self, theta_s_deg: f64) -> Result<Dhrf, DomainError> {
+    fn budget(&self, theta_s_deg: f64) -> Result<Budget, DomainError> {
         let angle = Angle::from_degrees(theta_s_deg);
-        let nothing = Dhrf { theta_s_deg, specular: f64::NAN, specular_se: f64::NAN, diffuse: 1.0 };
+        let nothing = Budget { theta_s_deg, specular: f64::NAN, specular_se: f64::NAN, diffuse: 1.0 };
         let diffuse = match self.options.surface.diffuse {
             // P1 is P2 with e = 0
             DiffuseKind::P1 | DiffuseKind::P2 if self.fit.has_surface => {
@@ -164,17 +156,16 @@ impl LeafOutcome {
             _ => 1.0,
         };
         let ([Some(n), Some(sigma)], true) = ([self.value(N), self.value(SIGMA)], self.fit.has_surface) else {
-            return Ok(Dhrf { diffuse, ..nothing });
+            return Ok(Budget { diffuse, ..nothing });
         };
         let surface = &self.options.surface;
         let gradient = dhrf(surface.facets, surface.normalization, n, sigma, &Illumination::new(angle)?, Grade::E10)?;
         let c = &self.fit.covariance;
-        let variance = gradient.d_n * (gradient.d_n * c[N][N] + 2.0 * gradient.d_sigma * c[N][SIGMA])
-            + gradient.d_sigma * gradient.d_sigma * c[SIGMA][SIGMA];
         let open = |i: usize| self.fit.treatments[i].is_free() && self.fit.at_bound[i] == AtBound::Free;
         let unknown = [N, SIGMA].iter().any(|&i| open(i) && self.fit.standard_errors[i].is_none());
-        let specular_se = if unknown { f64::NAN } else { variance.max(0.0).sqrt() };
-        Ok(Dhrf { theta_s_deg, specular: gradient.value, specular_se, diffuse })
+        let specular_se =
+            if unknown { f64::NAN } else { Budget::specular_se(&gradient, [c[N][N], c[N][SIGMA], c[SIGMA][SIGMA]]) };
+        Ok(Budget { theta_s_deg, specular: gradient.value, specular_se, diffuse })
     }
 
     /// The leaf's row of `leaves.csv`.
@@ -222,12 +213,7 @@ impl LeafOutcome {
 
     /// `sigma=upper;n=lower`, or nothing.
     fn at_bound(&self) -> String {
-        let places = NAMES.iter().zip(self.fit.at_bound).filter_map(|(name, at)| match at {
-            AtBound::Free => None,
-            AtBound::Lower => Some(format!("{name}=lower")),
-            AtBound::Upper => Some(format!("{name}=upper")),
-        });
-        places.collect::<Vec<_>>().join(";")
+        tables::at_bound(NAMES.into_iter().zip(self.fit.at_bound))
     }
 
     /// Writes `bands.csv` and `dhrf.csv` into a folder, each whole or not at all.
@@ -235,78 +221,35 @@ impl LeafOutcome {
     /// # Errors
     /// The system's.
     pub fn write_tables(&self, folder: &Path) -> io::Result<()> {
-        let columns = [
-            "wavelength_nm",
-            "k_l",
-            "n",
-            "sigma",
-            "rmse",
-            "n_obs",
-            "status",
-            "at_bound",
-            "k_l_se",
-            "n_se",
-            "sigma_se",
-            "p1_a",
-            "p1_b",
-            "p2_e",
-            "tilt_in_plane_deg",
-            "tilt_lateral_deg",
-            "facets",
-            "diffuse",
-            "note",
-            "normalization",
-        ];
-        let fit = &self.fit;
-        let mut table = TableWriter::create(Some(&folder.join("bands.csv")), Some(Format::Csv), &columns)?;
-        let at_bound = self.at_bound();
-        let converged = if fit.termination.converged() { "converged" } else { "max_iterations" };
-        let surface = &self.options.surface;
-        for (place, nm) in fit.wavelengths_nm.iter().enumerate() {
-            let (squares, n_obs) = fit.squares[place];
-            let k_l = fit.k_lambert[place];
-            let mut row = vec![Cell::Number(*nm), Cell::Number(k_l)];
-            row.extend(self.surface_at(*nm).map(optional));
-            row.push(Cell::Number((squares / n_obs as f64).sqrt()));
-            row.extend([Cell::Count(n_obs as u64), Cell::Text(converged), Cell::Text(&at_bound)]);
-            row.push(optional(fit.k_lambert_se[place]));
-            row.extend([N, SIGMA].map(|i| optional(self.standard_error(i))));
-            row.extend([DIFFUSE_A, DIFFUSE_B, DIFFUSE_E, TILT_IN_PLANE, TILT_LATERAL].map(|i| optional(self.value(i))));
-            row.extend([surface.facets.name(), surface.diffuse.name()].map(Cell::Text));
-            row.push(Cell::Text(if k_l < 0.0 { "k_l negative" } else { "" }));
-            row.push(Cell::Text(surface.normalization.name()));
-            table.row(&row)?;
-        }
-        table.finish()?;
-
-        let columns = [
-            "wavelength_nm",
-            "theta_s_deg",
-            "dhrf_diffuse",
-            "dhrf_specular",
-            "dhrf",
-            "dhrf_specular_se",
-            "specular_share",
-            "normalization",
-        ];
-        let mut table = TableWriter::create(Some(&folder.join("dhrf.csv")), Some(Format::Csv), &columns)?;
-        for (nm, k_l) in fit.wavelengths_nm.iter().zip(&fit.k_lambert) {
-            for row in &self.dhrf {
-                let diffuse = k_l * row.diffuse;
-                let total = diffuse + row.specular;
-                let numbers =
-                    [*nm, row.theta_s_deg, diffuse, row.specular, total, row.specular_se, row.specular / total];
-                let mut cells: Vec<Cell<'_>> = numbers.map(Cell::Number).to_vec();
-                cells.push(Cell::Text(surface.normalization.name()));
-                table.row(&cells)?;
+        let (fit, surface) = (&self.fit, &self.options.surface);
+        let leaf = OneSurface {
+            at_bound: &self.at_bound(),
+            shape: [DIFFUSE_A, DIFFUSE_B, DIFFUSE_E, TILT_IN_PLANE, TILT_LATERAL].map(|i| self.value(i)),
+            facets: surface.facets.name(),
+            diffuse: surface.diffuse.name(),
+            normalization: surface.normalization,
+        };
+        let status = if fit.termination.converged() { "converged" } else { "max_iterations" };
+        let bands = fit.wavelengths_nm.iter().enumerate().map(|(place, nm)| {
+            let ((squares, n_obs), k_l) = (fit.squares[place], fit.k_lambert[place]);
+            Band {
+                wavelength_nm: *nm,
+                k_l: Some(k_l),
+                surface: self.surface_at(*nm),
+                rmse: Some((squares / n_obs as f64).sqrt()),
+                n_obs,
+                status,
+                k_l_se: fit.k_lambert_se[place],
+                surface_se: [N, SIGMA].map(|i| self.standard_error(i)),
+                note: if k_l < 0.0 { "k_l negative" } else { "" },
             }
-        }
-        table.finish()
-    }
-}
+        });
+        write_bands(folder, &leaf, bands)?;
 
-fn optional(number: Option<f64>) -> Cell<'static> {
-    number.map_or(Cell::Empty, Cell::Number)
+        let bands = fit.wavelengths_nm.iter().zip(&fit.k_lambert);
+        let rows = bands.flat_map(|(nm, k_l)| self.dhrf.iter().map(|budget| (*nm, budget.with_k_lambert(*k_l))));
+        write_budgets(folder, surface.normalization, rows)
+    }
 }
 
 /// Four digits.

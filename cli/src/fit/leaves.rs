@@ -6,17 +6,6 @@ use std::path::Path;
 use super::Summary;
 use crate::output::{Cell, Format, TableWriter};
 
-/// One leaf's row.
-#[derive(Clone, Debug)]
-pub struct LeafRow {
-    /// The leaf's name.
-    pub leaf: String,
-    /// The file it came from.
-    pub file: String,
-    /// What was found, or the sentence that says why nothing was.
-    pub result: Result<Summary, String>,
-}
-
 /// The columns that the contract names, in its order; cells of parameters that a model does not have are empty.
 const COLUMNS: [&str; 49] = [
     "leaf",
@@ -114,6 +103,7 @@ pub struct LeafValues {
 impl From<&Summary> for LeafValues {
     fn from(summary: &Summary) -> Self {
         LeafValues {
+            normalization: Some(summary.normalization.name().to_string()),
             n: Some(summary.n),
             sigma: Some(summary.sigma),
             rmse: summary.rmse,
@@ -129,21 +119,7 @@ impl From<&Summary> for LeafValues {
 /// One row of `leaves.csv`: the leaf's name, its file, and what was found or the sentence that says why nothing was.
 pub type LeafRecord = (String, String, Result<LeafValues, String>);
 
-/// Writes `leaves.csv` into a folder, whole or not at all.
-///
-/// # Errors
-/// The system's.
-pub fn write_leaves(folder: &Path, model: &str, normalization: &str, rows: &[LeafRow]) -> io::Result<()> {
-    let with_convention =
-        |summary| LeafValues { normalization: Some(normalization.to_string()), ..LeafValues::from(summary) };
-    let records: Vec<LeafRecord> = rows
-        .iter()
-        .map(|row| (row.leaf.clone(), row.file.clone(), row.result.as_ref().map(with_convention).map_err(Clone::clone)))
-        .collect();
-    write_records(folder, model, Some(normalization), &records)
-}
-
-/// The same for any model; `normalization` is what failed leaves would have had, where the model has one.
+/// Writes `leaves.csv` into a folder, whole or not at all; `normalization` is what failed leaves would have had, where the model has one.
 ///
 /// # Errors
 /// The system's.
@@ -187,5 +163,5 @@ pub fn write_records(
 }
 
 fn number<'a>(number: &Option<f64>) -> Cell<'a> {
-    number.map_or(Cell::Empty, Cell::Number)
+    Cell::or_empty(*number)
 }

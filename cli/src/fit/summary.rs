@@ -1,7 +1,7 @@
 //! `summary.json`: the leaf as a whole. Mean n and σ (Table 4), their spectral invariance (§4.3), how good the fit is, what
 //! was left out and why, and what the user should be warned of.
 
-use std::io::{self, Write};
+use std::io;
 use std::path::Path;
 
 use leafbrdf_core::Normalization;
@@ -9,8 +9,8 @@ use leafbrdf_fit::{AtBound, BandFit, Identifiability};
 use serde_json::{Value, json};
 
 use super::bands::{BandsOutcome, PARAMETERS, status};
+use super::json::{self, constant, directions, finite, metadata, program, wavelengths};
 use crate::measurement::Measurement;
-use crate::output::AtomicFile;
 
 /// VIS ends and NIR begins here, nm.
 const VIS_END_NM: f64 = 700.0;
@@ -32,6 +32,8 @@ pub struct Summary {
     pub fitted: usize,
     /// What the user should know before using the numbers.
     pub warnings: Vec<String>,
+    /// The convention for K.
+    pub normalization: Normalization,
     json: Value,
 }
 
@@ -63,25 +65,17 @@ impl Summary {
             })
             .collect();
         let selected = &outcome.selected;
-        let metadata: serde_json::Map<String, Value> =
-            leaf.metadata.iter().map(|(key, value)| (key.to_string(), json!(value))).collect();
         let json = json!({
-            "program": {"name": "leafbrdf", "version": env!("CARGO_PKG_VERSION")},
+            "program": program(),
             "leaf": leaf.name,
             "file": source,
-            "metadata": metadata,
+            "metadata": metadata(&leaf.metadata),
             "model": "bands",
             "normalization": outcome.normalization.name(),
-            "normalization_constant_k": match outcome.normalization {
-                Normalization::Bousquet2005 => "2 pi^2 (Eq. 10 as printed)",
-                Normalization::CookTorrance => "4 pi (as derived from Eqs 5, 6, 9)",
-            },
+            "normalization_constant_k": constant(outcome.normalization),
             "units": {"k_l": "1", "n": "1", "sigma": "1 (rms slope over both axes)", "rmse": "sr^-1 of BRDF"},
             "weights": if selected.sd.is_some() { "1/sd^2" } else { "equal" },
-            "wavelengths_nm": {
-                "first": selected.wavelengths_nm.first(), "last": selected.wavelengths_nm.last(),
-                "count": selected.wavelengths_nm.len(),
-            },
+            "wavelengths_nm": wavelengths(&selected.wavelengths_nm),
             "theta_s_deg": selected.sources_deg(),
             "parameters": parameters,
             "rmse": finite(rmse),
@@ -97,21 +91,29 @@ impl Summary {
                 "too_few_values": count("too_few_values"), "at_bound": at_bound,
                 "with_a_second_valley": fits.iter().filter(|(_, fit)| fit.second.is_some()).count(),
             },
-            "directions": {
-                "used": selected.geometries.len(), "left_out_beyond_max_theta_v": selected.directions_left_out,
-            },
-            "values": {
-                "used": selected.used,
-                "negative_among_them": selected.negative,
-                "left_out": {
-                    "missing": selected.missing, "beyond_max_theta_v": selected.beyond_theta_v,
-                    "other_wavelengths": selected.other_wavelengths,
-                },
-            },
+            "directions": directions(selected),
+            "values": json::values(selected, selected.used),
             "warnings": warnings,
         });
         let mean = |p: usize| fits.iter().map(|(_, fit)| fit.parameters[p]).sum::<f64>() / fits.len() as f64;
-        Summary { n: mean(1), sigma: mean(2), rmse, r2, fitted: fits.len(), warnings, json }
+        Summary {
+            n: mean(1),
+            sigma: mean(2),
+            rmse,
+            r2,
+            fitted: fits.len(),
+            warnings,
+            normalization: outcome.normalization,
+            json,
+        }
+    }
+
+    /// One line for people.
+    pub fn line(&self) -> String {
+        format!(
+            "{} bands, mean n {:.4}, mean sigma {:.4}, rmse {:.3e} sr^-1, R2 {:.4}",
+            self.fitted, self.n, self.sigma, self.rmse, self.r2
+        )
     }
 
     /// Writes `summary.json` into a folder, whole or not at all.
@@ -119,16 +121,8 @@ impl Summary {
     /// # Errors
     /// The system's.
     pub fn write(&self, folder: &Path) -> io::Result<()> {
-        let mut file = AtomicFile::create(&folder.join("summary.json"))?;
-        serde_json::to_writer_pretty(&mut file, &self.json)?;
-        file.write_all(b"\n")?;
-        file.commit()
+        json::write(folder, &self.json)
     }
-}
-
-/// A number, or `null` where there is none.
-fn finite(number: f64) -> Value {
-    if number.is_finite() { json!(number) } else { Value::Null }
 }
 
 /// Σ (value − mean)² over all values of fitted bands.

@@ -6,14 +6,14 @@ mod summary;
 use std::io;
 use std::path::Path;
 
-use leafbrdf_core::{Angle, Diffuse, DomainError, Grade, Illumination, Normalization, P2, Surface};
+use leafbrdf_core::{Angle, Diffuse, DomainError, Grade, Illumination, P2, Surface};
 use leafbrdf_fit::surface::model::{DIFFUSE_A, DIFFUSE_B, DIFFUSE_E, N, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
 use leafbrdf_fit::surface::{DiffuseKind, FacetKind, Knowledge, SurfaceData, SurfaceFit, SurfaceOptions, Treatment};
 use leafbrdf_fit::{AtBound, Interval};
 
+use super::tables::{self, Band, Budget, OneSurface, write_bands, write_budgets};
 use super::{FitFailure, LeafValues, Selected};
 use crate::measurement::Measurement;
-use crate::output::{Cell, Format, TableWriter};
 
 /// One leaf's surface, fitted.
 #[derive(Clone, Debug)]
@@ -29,15 +29,7 @@ pub struct SurfaceOutcome {
     /// Between which k_L counts as plausible (Table 3); nothing is held there.
     k_l_bounds: Interval<f64>,
     /// DHRF_spec, its standard error, and the diffuse term's DHRF for k_L = 1, at every source angle.
-    dhrf: Vec<Dhrf>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Dhrf {
-    theta_s_deg: f64,
-    specular: f64,
-    specular_se: f64,
-    diffuse: f64,
+    dhrf: Vec<Budget>,
 }
 
 /// Fits one surface to the selected data.
@@ -64,7 +56,7 @@ pub fn fit_surface(
 }
 
 /// DHRF_spec of the leaf's own surface at θ_s from the leaf's normal: a tilt in the holder has no part in it.
-fn dhrf(fit: &SurfaceFit, options: &SurfaceOptions, theta_s_deg: f64) -> Result<Dhrf, DomainError> {
+fn dhrf(fit: &SurfaceFit, options: &SurfaceOptions, theta_s_deg: f64) -> Result<Budget, DomainError> {
     let angle = Angle::from_degrees(theta_s_deg);
     let source = Illumination::new(angle)?;
     let [n, sigma, a, b, _, _, e] = fit.x;
@@ -85,10 +77,9 @@ fn dhrf(fit: &SurfaceFit, options: &SurfaceOptions, theta_s_deg: f64) -> Result<
     let errors = &fit.errors;
     let unknown = [N, SIGMA].iter().any(|&i| errors.standard_errors[i].is_none() && is_open(fit, i));
     let c = &errors.covariance;
-    let variance = gradient.d_n * (gradient.d_n * c[N][N] + 2.0 * gradient.d_sigma * c[N][SIGMA])
-        + gradient.d_sigma * gradient.d_sigma * c[SIGMA][SIGMA];
-    let specular_se = if unknown { f64::NAN } else { variance.max(0.0).sqrt() };
-    Ok(Dhrf { theta_s_deg, specular: gradient.value, specular_se, diffuse })
+    let specular_se =
+        if unknown { f64::NAN } else { Budget::specular_se(&gradient, [c[N][N], c[N][SIGMA], c[SIGMA][SIGMA]]) };
+    Ok(Budget { theta_s_deg, specular: gradient.value, specular_se, diffuse })
 }
 
 /// Is a parameter sought, and not at a bound?
@@ -171,12 +162,7 @@ impl SurfaceOutcome {
 
     /// `sigma=upper;n=lower`, or nothing.
     fn at_bound(&self) -> String {
-        let places = PARAMETERS.iter().zip(self.fit.at_bound).filter_map(|((name, _), at)| match at {
-            AtBound::Free => None,
-            AtBound::Lower => Some(format!("{name}=lower")),
-            AtBound::Upper => Some(format!("{name}=upper")),
-        });
-        places.collect::<Vec<_>>().join(";")
+        tables::at_bound(PARAMETERS.iter().map(|(name, _)| *name).zip(self.fit.at_bound))
     }
 
     /// Why standard errors are missing, parameter by parameter, or nothing.
@@ -199,81 +185,34 @@ impl SurfaceOutcome {
     /// # Errors
     /// The system's.
     pub fn write_tables(&self, folder: &Path) -> io::Result<()> {
-        let columns = [
-            "wavelength_nm",
-            "k_l",
-            "n",
-            "sigma",
-            "rmse",
-            "n_obs",
-            "status",
-            "at_bound",
-            "k_l_se",
-            "n_se",
-            "sigma_se",
-            "p1_a",
-            "p1_b",
-            "p2_e",
-            "tilt_in_plane_deg",
-            "tilt_lateral_deg",
-            "facets",
-            "diffuse",
-            "note",
-            "normalization",
-        ];
-        let mut table = TableWriter::create(Some(&folder.join("bands.csv")), Some(Format::Csv), &columns)?;
-        let (at_bound, note) = (self.at_bound(), self.note());
+        let leaf = OneSurface {
+            at_bound: &self.at_bound(),
+            shape: [DIFFUSE_A, DIFFUSE_B, DIFFUSE_E, TILT_IN_PLANE, TILT_LATERAL].map(|i| self.value(i)),
+            facets: self.options.facets.name(),
+            diffuse: self.options.diffuse.name(),
+            normalization: self.options.normalization,
+        };
+        let note = self.note();
         let converged = if self.fit.termination.converged() { "converged" } else { "max_iterations" };
-        let words = [self.options.facets.name(), self.options.diffuse.name(), &note, self.options.normalization.name()];
-        for (wavelength, band) in self.selected.wavelengths_nm.iter().zip(&self.fit.bands) {
+        let bands = || self.selected.wavelengths_nm.iter().zip(&self.fit.bands);
+        let rows = bands().map(|(nm, band)| {
             let fitted = band.k_lambert.is_some();
-            let mut row = vec![Cell::Number(*wavelength), optional(band.k_lambert)];
-            row.extend([N, SIGMA].map(|i| optional(self.value(i).filter(|_| fitted))));
-            row.push(optional(fitted.then(|| (band.squares / band.n_obs as f64).sqrt())));
-            row.push(Cell::Count(band.n_obs as u64));
-            row.extend([Cell::Text(if fitted { converged } else { "too_few_values" }), Cell::Text(&at_bound)]);
-            row.push(optional(band.k_lambert_se));
-            row.extend([N, SIGMA].map(|i| optional(self.standard_error(i).filter(|_| fitted))));
-            row.extend([DIFFUSE_A, DIFFUSE_B, DIFFUSE_E, TILT_IN_PLANE, TILT_LATERAL].map(|i| optional(self.value(i))));
-            row.extend(words.map(Cell::Text));
-            table.row(&row)?;
-        }
-        table.finish()?;
-
-        let columns = [
-            "wavelength_nm",
-            "theta_s_deg",
-            "dhrf_diffuse",
-            "dhrf_specular",
-            "dhrf",
-            "dhrf_specular_se",
-            "specular_share",
-            "normalization",
-        ];
-        let mut table = TableWriter::create(Some(&folder.join("dhrf.csv")), Some(Format::Csv), &columns)?;
-        for (wavelength, band) in self.selected.wavelengths_nm.iter().zip(&self.fit.bands) {
-            for row in &self.dhrf {
-                let diffuse = band.k_lambert.map_or(f64::NAN, |k_l| k_l * row.diffuse);
-                let total = diffuse + row.specular;
-                let numbers =
-                    [*wavelength, row.theta_s_deg, diffuse, row.specular, total, row.specular_se, row.specular / total];
-                let mut cells: Vec<Cell<'_>> = numbers.map(Cell::Number).to_vec();
-                cells.push(Cell::Text(self.options.normalization.name()));
-                table.row(&cells)?;
+            Band {
+                wavelength_nm: *nm,
+                k_l: band.k_lambert,
+                surface: [N, SIGMA].map(|i| self.value(i).filter(|_| fitted)),
+                rmse: fitted.then(|| (band.squares / band.n_obs as f64).sqrt()),
+                n_obs: band.n_obs,
+                status: if fitted { converged } else { "too_few_values" },
+                k_l_se: band.k_lambert_se,
+                surface_se: [N, SIGMA].map(|i| self.standard_error(i).filter(|_| fitted)),
+                note: &note,
             }
-        }
-        table.finish()
-    }
-}
+        });
+        write_bands(folder, &leaf, rows)?;
 
-fn optional(number: Option<f64>) -> Cell<'static> {
-    number.map_or(Cell::Empty, Cell::Number)
-}
-
-/// How K is written out.
-fn constant(normalization: Normalization) -> &'static str {
-    match normalization {
-        Normalization::Bousquet2005 => "2 pi^2 (Eq. 10 as printed)",
-        Normalization::CookTorrance => "4 pi (as derived from Eqs 5, 6, 9)",
+        let of_band = |k_l: Option<f64>, budget: &Budget| budget.with_k_lambert(k_l.unwrap_or(f64::NAN));
+        let rows = bands().flat_map(|(nm, band)| self.dhrf.iter().map(|one| (*nm, of_band(band.k_lambert, one))));
+        write_budgets(folder, self.options.normalization, rows)
     }
 }

@@ -38,6 +38,11 @@ pub enum Cell<'a> {
 }
 
 impl Cell<'_> {
+    /// A number, or an empty cell where there is none.
+    pub fn or_empty(number: Option<f64>) -> Self {
+        number.map_or(Cell::Empty, Cell::Number)
+    }
+
     fn push_plain(self, text: &mut String) {
         match self {
             Cell::Number(number) if number.is_finite() => push_number(text, number),

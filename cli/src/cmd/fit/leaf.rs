@@ -1,19 +1,18 @@
 //! `leafbrdf fit --model leaf`: surface and interior of whole leaves.
 
-use std::fs;
-
 use clap::{Args, ValueEnum};
-use leafbrdf::fit::{LeafOutcome, LeafRecord, Selected, Selection, fit_leaf, write_records};
-use leafbrdf::output::file_name;
+use indicatif::ProgressBar;
+use leafbrdf::fit::fit_leaf;
+use leafbrdf::measurement::Measurement;
 use leafbrdf_fit::leaf::parameters::{GAIN, OFFSET, place};
 use leafbrdf_fit::leaf::recipe::{DORSIVENTRAL, DRY_MATTER, PLAIN, TWO_LAYER};
 use leafbrdf_fit::leaf::{Interior, LeafOptions, Method, Recipe, SurfaceFrom, Treatment};
 use leafbrdf_prospect::Coupling;
-use rayon::prelude::*;
 
 use super::super::Failure;
 use super::super::leaf::CouplingName;
-use super::{Arguments, Input, Range, prepare, progress_bar, read};
+use super::leaves::{self, Model};
+use super::{Arguments, Range};
 
 /// How a leaf is inverted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -175,49 +174,21 @@ impl Options {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.check_starts()?;
     let options = arguments.leaf.options(arguments)?;
-    let pool = prepare(arguments)?;
-    let bar = progress_bar("leaves");
-    let leaves = read(arguments);
-    let several = leaves.len() > 1;
-    bar.set_length(leaves.len() as u64);
-
-    let results: Vec<Result<LeafOutcome, String>> = pool.install(|| {
-        leaves
-            .par_iter()
-            .map(|leaf| {
-                let result = one_leaf(leaf, arguments, &options, several);
-                bar.inc(1);
-                result
-            })
-            .collect()
-    });
-    bar.finish_and_clear();
-
-    let values = |result: &Result<LeafOutcome, String>| result.as_ref().map(LeafOutcome::values).map_err(Clone::clone);
-    let records: Vec<LeafRecord> =
-        leaves.iter().zip(&results).map(|(leaf, r)| (leaf.name.clone(), leaf.file.clone(), values(r))).collect();
-    write_records(&arguments.output, "leaf", Some(options.surface.normalization.name()), &records)
-        .map_err(|error| Failure::writing(Some(&arguments.output.join("leaves.csv")), &error))?;
-    let named: Vec<_> = leaves.iter().map(|leaf| leaf.name.as_str()).zip(&results).collect();
-    super::report_leaves(&named, LeafOutcome::line, |outcome| &outcome.warnings)
-}
-
-fn one_leaf(input: &Input, arguments: &Arguments, options: &LeafOptions, several: bool) -> Result<LeafOutcome, String> {
-    let data = input.data.as_ref().map_err(Clone::clone)?;
-    let words = |failure: &dyn std::fmt::Display| format!("{}: leaf {}: {failure}", input.file, input.name);
-    let selection = Selection {
-        wavelengths: arguments.wavelengths,
-        max_theta_v_deg: arguments.max_theta_v,
-        use_sd: !arguments.ignore_sd,
+    let model = Model { name: "leaf", normalization: Some(options.surface.normalization.name()), bands: None };
+    let fit = |data: &Measurement, _: &ProgressBar| {
+        fit_leaf(data, leaves::selected(data, arguments)?, &options).map_err(|failure| failure.to_string())
     };
-    let selected = Selected::new(data, &selection).map_err(|failure| words(&failure))?;
-    let outcome = fit_leaf(data, selected, options).map_err(|failure| words(&failure))?;
-    let folder = if several { arguments.output.join(file_name(&input.name)) } else { arguments.output.clone() };
-    fs::create_dir_all(&folder)
-        .and_then(|()| outcome.write_tables(&folder))
-        .and_then(|()| outcome.write_summary(&folder, data, &input.file))
-        .map_err(|error| format!("{}: cannot be written: {error}", folder.display()))?;
-    Ok(outcome)
+    leaves::each(
+        arguments,
+        &model,
+        || leaves::measurements(arguments),
+        fit,
+        |outcome, folder, data, file| {
+            outcome.write_tables(folder)?;
+            outcome.write_summary(folder, data, file)?;
+            Ok((outcome.values(), outcome.line()))
+        },
+    )
 }
 
 /// What --prospect, --free, --fix, --bounds and --car-per-cab say of a leaf's interior.

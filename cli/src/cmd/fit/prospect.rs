@@ -1,14 +1,10 @@
 //! `leafbrdf fit --model prospect`: structure and contents of leaves from hemispherical spectra.
 
-use std::collections::HashMap;
-use std::fs;
-use std::io;
-use std::path::Path;
 use std::str::FromStr;
 
 use clap::Args;
-use leafbrdf::fit::{LeafRecord, ProspectOptions, ProspectOutcome, fit_prospect, write_records};
-use leafbrdf::output::file_name;
+use indicatif::ProgressBar;
+use leafbrdf::fit::{ProspectOptions, fit_prospect};
 use leafbrdf::spectra::{LeafSpectra, read_spectra};
 use leafbrdf_fit::Interval;
 use leafbrdf_fit::hemispherical::{Free, default_free};
@@ -16,11 +12,11 @@ use leafbrdf_fit::leaf::Treatment;
 use leafbrdf_fit::leaf::default_bounds;
 use leafbrdf_fit::leaf::parameters::place;
 use leafbrdf_prospect::{Error, LeafParams, Parameter, Prospect, Version, table};
-use rayon::prelude::*;
 
 use super::super::Failure;
 use super::super::version::VersionName;
-use super::{Arguments, Range, prepare, progress_bar};
+use super::leaves::{self, Model};
+use super::{Arguments, Range};
 
 /// The options that only this model has.
 #[derive(Args, Debug)]
@@ -311,83 +307,16 @@ fn refuse_others(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// One leaf of the input, or why there is none.
-struct Input {
-    name: String,
-    file: String,
-    data: Result<LeafSpectra, String>,
-}
-
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let options = arguments.prospect.options(arguments)?;
     refuse_others(arguments)?;
     arguments.surface.refuse("prospect")?;
     arguments.leaf.refuse("prospect")?;
-    let pool = prepare(arguments)?;
-    let bar = progress_bar("leaves");
-    let leaves = read(arguments);
-    let several = leaves.len() > 1;
-    bar.set_length(leaves.len() as u64);
-
-    let results: Vec<Result<ProspectOutcome, String>> = pool.install(|| {
-        leaves
-            .par_iter()
-            .map(|leaf| {
-                let folder =
-                    if several { arguments.output.join(file_name(&leaf.name)) } else { arguments.output.clone() };
-                let result = leaf.data.as_ref().map_err(Clone::clone).and_then(|data| {
-                    let outcome = fit_prospect(data, &options)
-                        .map_err(|failure| format!("{}: leaf {}: {failure}", leaf.file, leaf.name))?;
-                    write(&folder, data, leaf, &outcome)
-                        .map_err(|error| format!("{}: cannot be written: {error}", folder.display()))?;
-                    Ok(outcome)
-                });
-                bar.inc(1);
-                result
-            })
-            .collect()
-    });
-    bar.finish_and_clear();
-
-    let values =
-        |result: &Result<ProspectOutcome, String>| result.as_ref().map(ProspectOutcome::values).map_err(Clone::clone);
-    let records: Vec<LeafRecord> =
-        leaves.iter().zip(&results).map(|(leaf, r)| (leaf.name.clone(), leaf.file.clone(), values(r))).collect();
-    write_records(&arguments.output, "prospect", None, &records)
-        .map_err(|error| Failure::writing(Some(&arguments.output.join("leaves.csv")), &error))?;
-    let named: Vec<_> = leaves.iter().map(|leaf| leaf.name.as_str()).zip(&results).collect();
-    super::report_leaves(&named, ProspectOutcome::line, |outcome| &outcome.warnings)
-}
-
-fn write(folder: &Path, data: &LeafSpectra, leaf: &Input, outcome: &ProspectOutcome) -> io::Result<()> {
-    fs::create_dir_all(folder)?;
-    outcome.write(folder, data, &leaf.file)
-}
-
-/// All leaves of all files, each under a name of its own; a file that cannot be read is one failed leaf.
-fn read(arguments: &Arguments) -> Vec<Input> {
-    let mut inputs = Vec::new();
-    let mut places: HashMap<String, String> = HashMap::new();
-    for path in &arguments.files {
-        let file = path.display().to_string();
-        match read_spectra(path) {
-            Ok(leaves) => inputs.extend(leaves.into_iter().map(|leaf| {
-                let name = leaf.name.clone();
-                let data = match places.get(&file_name(&name)) {
-                    Some(other) => Err(format!(
-                        "{file}: leaf {name} has the name of one in {other}, whose results it would overwrite: give one of them \
-                         another file name or sample"
-                    )),
-                    None => Ok(leaf),
-                };
-                places.entry(file_name(&name)).or_insert_with(|| file.clone());
-                Input { name, file: file.clone(), data }
-            })),
-            Err(error) => {
-                let name = path.file_stem().map_or_else(|| file.clone(), |stem| stem.to_string_lossy().into_owned());
-                inputs.push(Input { name, file, data: Err(error.to_string()) });
-            }
-        }
-    }
-    inputs
+    let model = Model { name: "prospect", normalization: None, bands: None };
+    let read = || leaves::read(arguments, read_spectra, |leaf| &leaf.name);
+    let fit = |data: &LeafSpectra, _: &ProgressBar| fit_prospect(data, &options).map_err(|failure| failure.to_string());
+    leaves::each(arguments, &model, read, fit, |outcome, folder, data, file| {
+        outcome.write(folder, data, file)?;
+        Ok((outcome.values(), outcome.line()))
+    })
 }

@@ -1,19 +1,19 @@
 //! `leafbrdf fit --model surface`, and the options that every model of a whole leaf's surface shares.
 
-use std::fs;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
-use leafbrdf::fit::{LeafRecord, Selected, Selection, SurfaceOutcome, fit_surface, write_records};
-use leafbrdf::output::file_name;
+use indicatif::ProgressBar;
+use leafbrdf::fit::fit_surface;
+use leafbrdf::measurement::Measurement;
 use leafbrdf_core::Normalization;
 use leafbrdf_fit::Interval;
 use leafbrdf_fit::surface::model::{DIFFUSE_E, N, PARAMETERS, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
 use leafbrdf_fit::surface::{DiffuseKind, NAMES, Prior, SurfaceOptions, Treatment};
-use rayon::prelude::*;
 
 use super::super::Failure;
-use super::{Arguments, Input, Range, prepare, progress_bar, read};
+use super::leaves::{self, Model};
+use super::{Arguments, Range};
 
 /// The distribution of facets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -193,55 +193,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.prospect.refuse()?;
     arguments.leaf.refuse("surface")?;
     let options = arguments.surface.surface(arguments, SurfaceOptions::paper())?;
-    let pool = prepare(arguments)?;
-    let bar = progress_bar("leaves");
-    let leaves = read(arguments);
-    let several = leaves.len() > 1;
-    bar.set_length(leaves.len() as u64);
-
-    let results: Vec<Result<SurfaceOutcome, String>> = pool.install(|| {
-        leaves
-            .par_iter()
-            .map(|leaf| {
-                let result = one_leaf(leaf, arguments, &options, several);
-                bar.inc(1);
-                result
-            })
-            .collect()
-    });
-    bar.finish_and_clear();
-
-    let values =
-        |result: &Result<SurfaceOutcome, String>| result.as_ref().map(SurfaceOutcome::values).map_err(Clone::clone);
-    let records: Vec<LeafRecord> =
-        leaves.iter().zip(&results).map(|(leaf, r)| (leaf.name.clone(), leaf.file.clone(), values(r))).collect();
-    write_records(&arguments.output, "surface", Some(options.normalization.name()), &records)
-        .map_err(|error| Failure::writing(Some(&arguments.output.join("leaves.csv")), &error))?;
-    let named: Vec<_> = leaves.iter().map(|leaf| leaf.name.as_str()).zip(&results).collect();
-    super::report_leaves(&named, SurfaceOutcome::line, |outcome| &outcome.warnings)
-}
-
-fn one_leaf(
-    input: &Input,
-    arguments: &Arguments,
-    options: &SurfaceOptions,
-    several: bool,
-) -> Result<SurfaceOutcome, String> {
-    let data = input.data.as_ref().map_err(Clone::clone)?;
-    let words = |failure: &dyn std::fmt::Display| format!("{}: leaf {}: {failure}", input.file, input.name);
-    let selection = Selection {
-        wavelengths: arguments.wavelengths,
-        max_theta_v_deg: arguments.max_theta_v,
-        use_sd: !arguments.ignore_sd,
-    };
-    let selected = Selected::new(data, &selection).map_err(|failure| words(&failure))?;
     let Range(lower, upper) = arguments.k_l_bounds;
-    let outcome =
-        fit_surface(data, selected, options, Interval::new(lower, upper)).map_err(|failure| words(&failure))?;
-    let folder = if several { arguments.output.join(file_name(&input.name)) } else { arguments.output.clone() };
-    fs::create_dir_all(&folder)
-        .and_then(|()| outcome.write_tables(&folder))
-        .and_then(|()| outcome.write_summary(&folder, data, &input.file))
-        .map_err(|error| format!("{}: cannot be written: {error}", folder.display()))?;
-    Ok(outcome)
+    let model = Model { name: "surface", normalization: Some(options.normalization.name()), bands: None };
+    let fit = |data: &Measurement, _: &ProgressBar| {
+        let selected = leaves::selected(data, arguments)?;
+        fit_surface(data, selected, &options, Interval::new(lower, upper)).map_err(|failure| failure.to_string())
+    };
+    leaves::each(
+        arguments,
+        &model,
+        || leaves::measurements(arguments),
+        fit,
+        |outcome, folder, data, file| {
+            outcome.write_tables(folder)?;
+            outcome.write_summary(folder, data, file)?;
+            Ok((outcome.values(), outcome.line()))
+        },
+    )
 }

@@ -1,9 +1,8 @@
 //! `summary.json` of a leaf: what was found, how well it is known, what was chosen and by what, and what to be warned of.
 
-use std::io::{self, Write};
+use std::io;
 use std::path::Path;
 
-use leafbrdf_core::Normalization;
 use leafbrdf_fit::AtBound;
 use leafbrdf_fit::leaf::parameters::{NAMES, interior, place};
 use leafbrdf_fit::leaf::{Interior, Knowledge, Method, RecipeReport, Treatment};
@@ -12,18 +11,13 @@ use leafbrdf_prospect::Parameter;
 use serde_json::{Map, Value, json};
 
 use super::{LeafOutcome, unit};
+use crate::fit::json::{self, constant, directions, finite, metadata, optional, program, values, wavelengths};
 use crate::measurement::Measurement;
-use crate::output::AtomicFile;
 
 /// Another minimum whose cost is within this factor of the best is an ambiguity.
 const AMBIGUOUS: f64 = 1.1;
 /// From this condition number on (scaled to unit diagonal) errors of parameters lean on each other.
 const ILL_CONDITIONED: f64 = 1e4;
-
-/// A number, or `null` where there is none.
-fn finite(number: f64) -> Value {
-    if number.is_finite() { json!(number) } else { Value::Null }
-}
 
 impl LeafOutcome {
     /// Writes `summary.json` into a folder, whole or not at all.
@@ -31,17 +25,12 @@ impl LeafOutcome {
     /// # Errors
     /// The system's.
     pub fn write_summary(&self, folder: &Path, leaf: &Measurement, source: &str) -> io::Result<()> {
-        let mut file = AtomicFile::create(&folder.join("summary.json"))?;
-        serde_json::to_writer_pretty(&mut file, &self.json(leaf, source))?;
-        file.write_all(b"\n")?;
-        file.commit()
+        json::write(folder, &self.json(leaf, source))
     }
 
     fn json(&self, leaf: &Measurement, source: &str) -> Value {
         let (selected, fit) = (&self.selected, &self.fit);
         let surface = &self.options.surface;
-        let metadata: Map<String, Value> =
-            leaf.metadata.iter().map(|(key, value)| (key.to_string(), json!(value))).collect();
         let present: Vec<usize> = (0..NAMES.len()).filter(|&i| self.has(i)).collect();
         let parameters: Map<String, Value> =
             present.iter().map(|&i| (NAMES[i].to_string(), self.parameter(i))).collect();
@@ -53,12 +42,14 @@ impl LeafOutcome {
                 }
             }
         }
-        let left_out = selected.wavelengths_nm.len() - fit.wavelengths_nm.len();
+        let mut used = values(selected, fit.n_obs);
+        used["left_out"]["wavelengths_without_values_or_outside_prospect"] =
+            json!(selected.wavelengths_nm.len() - fit.wavelengths_nm.len());
         json!({
-            "program": {"name": "leafbrdf", "version": env!("CARGO_PKG_VERSION")},
+            "program": program(),
             "leaf": leaf.name,
             "file": source,
-            "metadata": metadata,
+            "metadata": metadata(&leaf.metadata),
             "model": "leaf",
             "method": fit.method.name(),
             "prospect": fit.version.name(),
@@ -67,10 +58,7 @@ impl LeafOutcome {
             "facets": surface.facets.name(),
             "diffuse": surface.diffuse.name(),
             "normalization": surface.normalization.name(),
-            "normalization_constant_k": match surface.normalization {
-                Normalization::Bousquet2005 => "2 pi^2 (Eq. 10 as printed)",
-                Normalization::CookTorrance => "4 pi (as derived from Eqs 5, 6, 9)",
-            },
+            "normalization_constant_k": constant(surface.normalization),
             "units": {
                 "k_l": "1", "n": "1", "sigma": "1 (rms slope over both axes)", "p1_a": "1", "p1_b": "1",
                 "tilt_in_plane_deg": "degree, towards the source", "tilt_lateral_deg": "degree, towards phi_v = 90",
@@ -80,9 +68,7 @@ impl LeafOutcome {
             },
             "recipe": fit.recipe.as_ref().map_or(Value::Null, |recipe| self.recipe(recipe)),
             "weights": if selected.sd.is_some() { "1/sd^2" } else { "equal" },
-            "wavelengths_nm": {
-                "first": fit.wavelengths_nm.first(), "last": fit.wavelengths_nm.last(), "count": fit.wavelengths_nm.len(),
-            },
+            "wavelengths_nm": wavelengths(&fit.wavelengths_nm),
             "theta_s_deg": selected.sources_deg(),
             "parameters": parameters,
             "car_per_cab": fit.car_per_cab,
@@ -119,18 +105,8 @@ impl LeafOutcome {
                     Value::Object(one)
                 }),
             },
-            "directions": {
-                "used": selected.vectors.len(), "left_out_beyond_max_theta_v": selected.directions_left_out,
-            },
-            "values": {
-                "used": fit.n_obs,
-                "negative_among_them": selected.negative,
-                "left_out": {
-                    "missing": selected.missing, "beyond_max_theta_v": selected.beyond_theta_v,
-                    "other_wavelengths": selected.other_wavelengths,
-                    "wavelengths_without_values_or_outside_prospect": left_out,
-                },
-            },
+            "directions": directions(selected),
+            "values": used,
             "warnings": self.warnings,
         })
     }
@@ -215,8 +191,8 @@ impl LeafOutcome {
             }
         };
         let mut one = json!({
-            "value": self.value(i).map_or(Value::Null, finite),
-            "standard_error": self.standard_error(i).map_or(Value::Null, finite),
+            "value": optional(self.value(i)),
+            "standard_error": optional(self.standard_error(i)),
             "knowledge": knowledge,
         });
         let Some(map) = one.as_object_mut() else { return one };
@@ -226,12 +202,7 @@ impl LeafOutcome {
         }
         if let Treatment::Free { bounds, prior } = &fit.treatments[i] {
             map.insert("bounds".to_string(), json!([bounds.lower * unit(i), bounds.upper * unit(i)]));
-            let at = match fit.at_bound[i] {
-                AtBound::Free => Value::Null,
-                AtBound::Lower => json!("lower"),
-                AtBound::Upper => json!("upper"),
-            };
-            map.insert("at_bound".to_string(), at);
+            map.insert("at_bound".to_string(), json::at_bound(fit.at_bound[i]));
             if let Some(prior) = prior {
                 let (sd, scale) = if prior.log { ("sd_of_ln", 1.0) } else { ("sd", unit(i)) };
                 let prior = json!({

@@ -1,6 +1,6 @@
 //! What is told of an inverted leaf: a line, warnings, `spectrum.csv`, `summary.json`.
 
-use std::io::{self, Write};
+use std::io;
 use std::path::Path;
 
 use leafbrdf_fit::hemispherical::Residuals;
@@ -9,7 +9,8 @@ use leafbrdf_prospect::Parameter;
 use serde_json::{Map, Value, json};
 
 use super::ProspectOutcome;
-use crate::output::{AtomicFile, Cell, Format, TableWriter};
+use crate::fit::json::{self, finite, metadata, program, wavelengths};
+use crate::output::{Cell, Format, TableWriter};
 use crate::spectra::LeafSpectra;
 
 impl ProspectOutcome {
@@ -115,16 +116,11 @@ impl ProspectOutcome {
             ])?;
         }
         table.finish()?;
-        let mut file = AtomicFile::create(&folder.join("summary.json"))?;
-        serde_json::to_writer_pretty(&mut file, &self.json(leaf, source))?;
-        file.write_all(b"\n")?;
-        file.commit()
+        json::write(folder, &self.json(leaf, source))
     }
 
     fn json(&self, leaf: &LeafSpectra, source: &str) -> Value {
         let [used, missing, other_wavelengths, negative] = self.counts;
-        let metadata: Map<String, Value> =
-            leaf.metadata.iter().map(|(key, value)| (key.to_string(), json!(value))).collect();
         let residuals = |residuals: &Option<Residuals<f64>>| match residuals {
             None => Value::Null,
             Some(residuals) => json!({
@@ -133,10 +129,10 @@ impl ProspectOutcome {
             }),
         };
         json!({
-            "program": {"name": "leafbrdf", "version": env!("CARGO_PKG_VERSION")},
+            "program": program(),
             "leaf": leaf.name,
             "file": source,
-            "metadata": metadata,
+            "metadata": metadata(&leaf.metadata),
             "model": "prospect",
             "prospect": self.version.name(),
             "units": {
@@ -144,10 +140,7 @@ impl ProspectOutcome {
                 "cm": "g cm^-2", "prot": "g cm^-2", "cbc": "g cm^-2", "rmse": "1 (reflectance, transmittance)",
             },
             "weights": if self.weighted { "1/sd^2" } else { "equal" },
-            "wavelengths_nm": {
-                "first": self.wavelengths_nm.first(), "last": self.wavelengths_nm.last(),
-                "count": self.wavelengths_nm.len(),
-            },
+            "wavelengths_nm": wavelengths(&self.wavelengths_nm),
             "parameters": self.parameters(),
             "car_per_cab": self.car_per_cab,
             "n_prior": self.prior.map(|prior| json!({
@@ -198,14 +191,7 @@ impl ProspectOutcome {
                 }
                 Some(estimate) => {
                     entry.insert("free".into(), json!(true));
-                    entry.insert(
-                        "at_bound".into(),
-                        match estimate.at_bound {
-                            AtBound::Free => Value::Null,
-                            AtBound::Lower => json!("lower"),
-                            AtBound::Upper => json!("upper"),
-                        },
-                    );
+                    entry.insert("at_bound".into(), json::at_bound(estimate.at_bound));
                     entry.insert("why_no_standard_error".into(), json!(estimate.why_no_error()));
                     let others = self.fit.estimates.iter().zip(&estimate.correlations);
                     let others = others.filter(|(other, _)| other.parameter != parameter);
@@ -218,9 +204,4 @@ impl ProspectOutcome {
         }
         parameters
     }
-}
-
-/// A number, or `null` where there is none.
-fn finite(number: f64) -> Value {
-    if number.is_finite() { json!(number) } else { Value::Null }
 }

@@ -1,6 +1,6 @@
 //! `summary.json` of a surface: what was found, how well it is known, what it rests on, and what to be warned of.
 
-use std::io::{self, Write};
+use std::io;
 use std::path::Path;
 
 use leafbrdf_core::{Angle, Tilt};
@@ -9,17 +9,12 @@ use leafbrdf_fit::surface::model::{N, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
 use leafbrdf_fit::surface::{FacetKind, Knowledge, Treatment, Valley};
 use serde_json::{Map, Value, json};
 
-use super::{PARAMETERS, SurfaceOutcome, constant};
+use super::{PARAMETERS, SurfaceOutcome};
+use crate::fit::json::{self, constant, directions, finite, metadata, optional, program, values, wavelengths};
 use crate::measurement::Measurement;
-use crate::output::AtomicFile;
 
 /// Valleys whose cost is within this factor of the best are an ambiguity.
 const AMBIGUOUS: f64 = 1.1;
-
-/// A number, or `null` where there is none.
-fn finite(number: f64) -> Value {
-    if number.is_finite() { json!(number) } else { Value::Null }
-}
 
 impl SurfaceOutcome {
     /// Writes `summary.json` into a folder, whole or not at all.
@@ -27,16 +22,11 @@ impl SurfaceOutcome {
     /// # Errors
     /// The system's.
     pub fn write_summary(&self, folder: &Path, leaf: &Measurement, source: &str) -> io::Result<()> {
-        let mut file = AtomicFile::create(&folder.join("summary.json"))?;
-        serde_json::to_writer_pretty(&mut file, &self.json(leaf, source))?;
-        file.write_all(b"\n")?;
-        file.commit()
+        json::write(folder, &self.json(leaf, source))
     }
 
     fn json(&self, leaf: &Measurement, source: &str) -> Value {
         let (selected, fit, errors) = (&self.selected, &self.fit, &self.fit.errors);
-        let metadata: Map<String, Value> =
-            leaf.metadata.iter().map(|(key, value)| (key.to_string(), json!(value))).collect();
         let present: Vec<usize> = (0..PARAMETERS.len()).filter(|&i| self.has(i)).collect();
         let parameters: Map<String, Value> =
             present.iter().map(|&i| (PARAMETERS[i].0.to_string(), self.parameter(i))).collect();
@@ -64,10 +54,10 @@ impl SurfaceOutcome {
         let outside = fit.k_lambert_outside(self.k_l_bounds);
         let empty = selected.wavelengths_nm.len() - self.fitted();
         json!({
-            "program": {"name": "leafbrdf", "version": env!("CARGO_PKG_VERSION")},
+            "program": program(),
             "leaf": leaf.name,
             "file": source,
-            "metadata": metadata,
+            "metadata": metadata(&leaf.metadata),
             "model": "surface",
             "facets": self.options.facets.name(),
             "diffuse": self.options.diffuse.name(),
@@ -82,10 +72,7 @@ impl SurfaceOutcome {
                 (true, false) => "1/sd^2", (false, false) => "equal",
                 (true, true) => "1/sd^2 and Huber's", (false, true) => "equal and Huber's",
             },
-            "wavelengths_nm": {
-                "first": selected.wavelengths_nm.first(), "last": selected.wavelengths_nm.last(),
-                "count": selected.wavelengths_nm.len(),
-            },
+            "wavelengths_nm": wavelengths(&selected.wavelengths_nm),
             "theta_s_deg": selected.sources_deg(),
             "parameters": parameters,
             "correlations": correlations,
@@ -113,17 +100,8 @@ impl SurfaceOutcome {
             },
             "spectral_invariance": {"definition": "n and sigma are the same at all wavelengths, by the model", "n": 0, "sigma": 0},
             "bands": {"fitted": self.fitted(), "without_values": empty},
-            "directions": {
-                "used": selected.vectors.len(), "left_out_beyond_max_theta_v": selected.directions_left_out,
-            },
-            "values": {
-                "used": selected.used,
-                "negative_among_them": selected.negative,
-                "left_out": {
-                    "missing": selected.missing, "beyond_max_theta_v": selected.beyond_theta_v,
-                    "other_wavelengths": selected.other_wavelengths,
-                },
-            },
+            "directions": directions(selected),
+            "values": values(selected, selected.used),
             "warnings": self.warnings,
         })
     }
@@ -139,18 +117,13 @@ impl SurfaceOutcome {
             Knowledge::NoDegreesOfFreedom => "no degrees of freedom",
         };
         let mut one = json!({
-            "value": self.value(i).map_or(Value::Null, finite),
-            "standard_error": self.standard_error(i).map_or(Value::Null, finite),
+            "value": optional(self.value(i)),
+            "standard_error": optional(self.standard_error(i)),
             "knowledge": knowledge,
         });
         if let (Treatment::Free { bounds, prior }, Some(map)) = (&fit.parameters[i], one.as_object_mut()) {
             map.insert("bounds".to_string(), json!([bounds.lower * scale, bounds.upper * scale]));
-            let at = match fit.at_bound[i] {
-                AtBound::Free => Value::Null,
-                AtBound::Lower => json!("lower"),
-                AtBound::Upper => json!("upper"),
-            };
-            map.insert("at_bound".to_string(), at);
+            map.insert("at_bound".to_string(), json::at_bound(fit.at_bound[i]));
             if let Some(prior) = prior {
                 let prior = json!({
                     "mean": prior.mean * scale, "sd": prior.sd * scale, "share_of_information": finite(errors.prior_share[i]),
