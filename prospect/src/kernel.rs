@@ -14,7 +14,7 @@ use crate::expint::{
 };
 use crate::lanes::{Lanes, Task};
 use crate::plate::{Interface, Plate};
-use crate::stack::{Decay, Optics, Pair, Reciprocals, SlopeSeries, Slopes, optics, slopes};
+use crate::stack::{Decay, Optics, Pair, Pile, Reciprocals, SlopeSeries, Slopes, optics, pile_of, slopes};
 use crate::table::View;
 
 /// Bands worked on together: several of the widest registers, within the first-level cache. Without `std` there is no SIMD to
@@ -130,6 +130,81 @@ pub(crate) fn load<T: Lanes>(column: &[T], first: usize) -> Block<T::Lane> {
 
 // The loops below run over whole fixed-size arrays: the compiler sees that no index can be out of range, and vectorises.
 
+/// What a leaf and a pile have in common: the plates of one block and how light fades in them.
+struct Front<L> {
+    side: Side,
+    k_ln_k: Block<L>,
+    plates: Plate<Block<L>>,
+    pairs: Pair<Block<L>>,
+    decays: Decay<Block<L>>,
+}
+
+#[inline(always)]
+fn front<L: Real>(k: &Block<L>, faces: &[Block<L>; 3], m: L) -> Front<L> {
+    let zero = Block::of(L::ZERO);
+    let side = Side::of(k);
+    let k_ln_k = logarithms(k, side);
+    let layers = transmissions(k, &k_ln_k, side);
+    let mut plates = Plate::padding(zero);
+    let mut pairs = Pair { d: zero, z: zero, half_t: zero, growth: zero };
+    for i in 0..BLOCK {
+        let plate = plate(faces, &layers, i);
+        let Pair { d, z, half_t, growth } = Pair::new(&plate);
+        (pairs.d[i], pairs.z[i], pairs.half_t[i], pairs.growth[i]) = (d, z, half_t, growth);
+        plates.put(i, plate);
+    }
+    let mut decays = Decay { l: zero, y: zero, y_less_one: zero };
+    for i in 0..BLOCK {
+        decays.l[i] = Decay::rate(pairs.growth[i]);
+    }
+    for i in 0..BLOCK {
+        let Decay { y, y_less_one, .. } = Decay::new(decays.l[i], m);
+        (decays.y[i], decays.y_less_one[i]) = (y, y_less_one);
+    }
+    Front { side, k_ln_k, plates, pairs, decays }
+}
+
+/// Piles of `m` equal plates (see [`Pile`]), one block: `faces` of isotropic light on either side.
+#[inline(always)]
+pub(crate) fn piles<L: Real>(k: &Block<L>, faces: &[Block<L>; 3], m: L, series: &SlopeSeries<L>) -> Piles<L> {
+    let zero = Block::of(L::ZERO);
+    let Front { side, k_ln_k, plates, pairs, decays } = front(k, faces, m);
+    let mut tau_inverse = zero;
+    for i in 0..BLOCK {
+        // t = t₉₀ t₂₁ τ/(1 − ρ²τ²), and 1/2t is there
+        tau_inverse[i] = (faces[1][i] * faces[2][i]) * plates.inverse[i] * (pairs.half_t[i] + pairs.half_t[i]);
+    }
+    let log_slope = log_slopes(k, &k_ln_k, &tau_inverse, side);
+    let mut piles = Piles { r: zero, t: zero, dr_dk: zero, dt_dk: zero, dr_dn: zero, dt_dn: zero };
+    for i in 0..BLOCK {
+        let plate = plates.at(i);
+        let slope = plate.slope(log_slope[i]);
+        let Pile { r, t, slopes } = pile_of(&plate, slope, &pairs.at(i), &decays.at(i), m, series);
+        (piles.r[i], piles.t[i]) = (r, t);
+        (piles.dr_dk[i], piles.dt_dk[i]) = (slopes.dr_dk, slopes.dt_dk);
+        (piles.dr_dn[i], piles.dt_dn[i]) = (slopes.dr_dn, slopes.dt_dn);
+    }
+    piles
+}
+
+/// Reflectance, transmittance and slopes of one block of piles.
+pub(crate) struct Piles<L> {
+    pub r: Block<L>,
+    pub t: Block<L>,
+    pub dr_dk: Block<L>,
+    pub dt_dk: Block<L>,
+    pub dr_dn: Block<L>,
+    pub dt_dn: Block<L>,
+}
+
+impl<L: Copy> Piles<L> {
+    #[inline(always)]
+    pub(crate) fn at(&self, i: usize) -> Pile<L> {
+        let slopes = Slopes { dr_dk: self.dr_dk[i], dt_dk: self.dt_dk[i], dr_dn: self.dr_dn[i], dt_dn: self.dt_dn[i] };
+        Pile { r: self.r[i], t: self.t[i], slopes }
+    }
+}
+
 #[inline(always)]
 fn block<L: Real, S: Sink<T>, T: Lanes<Lane = L>>(
     k: Block<L>,
@@ -148,25 +223,7 @@ fn block<L: Real, S: Sink<T>, T: Lanes<Lane = L>>(
         dr_dn: zero,
         dt_dn: zero,
     };
-    let side = Side::of(&k);
-    let k_ln_k = logarithms(&k, side);
-    let layers = transmissions(&k, &k_ln_k, side);
-    let mut plates = Plate::padding(zero);
-    let mut pairs = Pair { d: zero, z: zero, half_t: zero, growth: zero };
-    for i in 0..BLOCK {
-        let plate = plate(faces, &layers, i);
-        let Pair { d, z, half_t, growth } = Pair::new(&plate);
-        (pairs.d[i], pairs.z[i], pairs.half_t[i], pairs.growth[i]) = (d, z, half_t, growth);
-        plates.put(i, plate);
-    }
-    let mut decays = Decay { l: zero, y: zero, y_less_one: zero };
-    for i in 0..BLOCK {
-        decays.l[i] = Decay::rate(pairs.growth[i]);
-    }
-    for i in 0..BLOCK {
-        let Decay { y, y_less_one, .. } = Decay::new(decays.l[i], m);
-        (decays.y[i], decays.y_less_one[i]) = (y, y_less_one);
-    }
+    let Front { side, k_ln_k, plates, pairs, decays } = front(&k, faces, m);
     let mut reciprocals = Reciprocals { h: zero, d: zero };
     for i in 0..BLOCK {
         let (plate, pair, decay) = (plates.at(i), pairs.at(i), decays.at(i));

@@ -352,8 +352,9 @@ fn store<T: Lanes>(to: &mut [T], first: usize, block: &Block<T::Lane>) {
     store_with(to, first, |i| block[i]);
 }
 
+/// Writes a block, element by element.
 #[inline(always)]
-fn store_with<T: Lanes>(to: &mut [T], first: usize, value: impl Fn(usize) -> T::Lane) {
+pub(crate) fn store_with<T: Lanes>(to: &mut [T], first: usize, value: impl Fn(usize) -> T::Lane) {
     let rest = to.get_mut(first..).unwrap_or_default();
     if let Some(whole) = rest.first_chunk_mut::<BLOCK>() {
         for (i, to) in whole.iter_mut().enumerate() {

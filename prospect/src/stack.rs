@@ -195,9 +195,22 @@ pub(crate) struct Pile<T> {
 /// `m` ≥ 0 equal plates: R = 2 r Q/G, T = 1/G. `plate` is one whose two faces are alike.
 #[inline(always)]
 pub(crate) fn pile<T: Real>(plate: &Plate<T>, slope: PlateSlope<T>, m: T, series: &SlopeSeries<T>) -> Pile<T> {
-    let Plate { r, t, .. } = *plate;
     let pair = Pair::new(plate);
     let decay = Decay::new(Decay::rate(pair.growth), m);
+    pile_of(plate, slope, &pair, &decay, m, series)
+}
+
+/// [`pile`] from its parts.
+#[inline(always)]
+pub(crate) fn pile_of<T: Real>(
+    plate: &Plate<T>,
+    slope: PlateSlope<T>,
+    pair: &Pair<T>,
+    decay: &Decay<T>,
+    m: T,
+    series: &SlopeSeries<T>,
+) -> Pile<T> {
+    let Plate { r, t, .. } = *plate;
     let y = decay.y;
     let d_inverse = T::ONE / pair.d;
     // y Q, y cosh ML, y G and its reciprocal
@@ -216,7 +229,7 @@ pub(crate) fn pile<T: Real>(plate: &Plate<T>, slope: PlateSlope<T>, m: T, series
 
     // by K at constant m
     let e = -(slope.log_t * pair.z + T::TWO * r * slope.r);
-    let v = series.v(&pair, &decay, plate, m, q, cosh, d_inverse);
+    let v = series.v(pair, decay, plate, m, q, cosh, d_inverse);
     let q_k = v * e - q * slope.log_t;
     let prefactor_k = T::TWO * (r * slope.r - t.squared() * slope.log_t);
     let g_k = (prefactor_k * q + g * q_k + m * q * e) * inverse;

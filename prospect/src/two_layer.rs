@@ -12,11 +12,12 @@ use leafbrdf_core::Real;
 
 use crate::error::Error;
 use crate::expint::{transmission, transmission_log_slope};
-use crate::lanes::Lanes;
-use crate::model::Prospect;
+use crate::kernel::{BLOCK, Block, load, piles};
+use crate::lanes::{Lanes, Task, widest};
+use crate::model::{Prospect, store_with};
 use crate::params::{LeafParams, Parameter};
 use crate::plate::{Interface, Plate};
-use crate::stack::{SlopeSeries, pile};
+use crate::stack::{Pile, SlopeSeries, pile};
 
 /// PROSPECT's plates with the pigments unevenly shared between the leaf's upper and lower half.
 ///
@@ -101,11 +102,10 @@ impl<'a, T: Real> TwoLayer<'a, T> {
 
     /// How much more or less of a constituent a layer holds than if it were evenly spread.
     fn shares(&self, constituent: Parameter) -> (T, T) {
-        match constituent {
-            Parameter::Cab | Parameter::Car | Parameter::Cant | Parameter::Cbrown => {
-                (T::TWO * self.upper_share, T::TWO * (T::ONE - self.upper_share))
-            }
-            _ => (T::ONE, T::ONE),
+        if is_pigment(constituent) {
+            (T::TWO * self.upper_share, T::TWO * (T::ONE - self.upper_share))
+        } else {
+            (T::ONE, T::ONE)
         }
     }
 }
@@ -140,59 +140,134 @@ impl<T: Lanes> TwoLayer<'_, T> {
         if let Some(slice) = &by_upper_share {
             length("by_upper_share", slice.len(), 1)?;
         }
-        let n_struct = leaf.n_struct;
-        let m = (T::HALF * n_struct).into_lane();
-        let series = SlopeSeries::new(m);
-        let mut by_upper_share = by_upper_share;
-        let mut room = [T::ZERO; 3];
-        for (band, d) in diffuse.iter_mut().enumerate() {
-            let Some(faces) = view.interface(band) else { break };
-            let (upper, lower) = self.absorption(leaf, band);
-            let lanes = Interface {
-                t_alpha: faces.t_alpha.into_lane(),
-                t_90: faces.t_90.into_lane(),
-                t_21: (faces.t_21).into_lane(),
-            };
-            let here = two_stacks(lanes, upper.into_lane(), lower.into_lane(), m, &series);
-            *d = T::from_lane(here.d);
-            for (to, from) in room.iter_mut().zip([here.by_upper, here.by_lower, here.by_n]) {
-                *to = T::from_lane(from);
-            }
-            let [by_upper, by_lower, by_n] = room;
-            for (place, &parameter) in parameters.iter().enumerate() {
-                let slope = if parameter == Parameter::NStruct {
-                    // K = S/N with S fixed
-                    by_n - (by_upper * upper + by_lower * lower) / n_struct
-                } else {
-                    let mut sum = T::ZERO;
-                    for (column, &constituent) in view.coefficients().zip(view.version().constituents()) {
-                        let rate = self.model.content_rate(constituent, parameter);
-                        if rate > T::ZERO {
-                            let (over, under) = self.shares(constituent);
-                            let k = column.get(band).copied().unwrap_or(T::ZERO);
-                            sum += rate * k * (by_upper * over + by_lower * under);
-                        }
-                    }
-                    sum / n_struct
-                };
-                if let Some(to) = derivatives.get_mut(place * bands + band) {
-                    *to = slope;
-                }
-            }
-            if let Some(to) = by_upper_share.as_mut().and_then(|slice| slice.get_mut(band)) {
-                // dK₁/df = 2 K_p/N = −dK₂/df
-                let mut pigments = T::ZERO;
-                for (column, &constituent) in view.coefficients().zip(view.version().constituents()) {
-                    if matches!(constituent, Parameter::Cab | Parameter::Car | Parameter::Cant | Parameter::Cbrown) {
-                        pigments +=
-                            self.model.content(leaf, constituent) * column.get(band).copied().unwrap_or(T::ZERO);
-                    }
-                }
-                *to = T::TWO * pigments * (by_upper - by_lower) / n_struct;
-            }
-        }
+        let per_plate = T::ONE / leaf.n_struct;
+        let rooms = Rooms { diffuse, derivatives, by_upper_share };
+        widest(Spectrum { interior: self, leaf, per_plate, parameters, rooms });
         Ok(())
     }
+
+    /// How a parameter changes K₁ and K₂ per unit of absorption: (column, dK₁, dK₂) for one constituent and one tied to it.
+    fn rates(&self, parameter: Parameter, per_plate: T) -> [Option<(usize, T, T)>; 2] {
+        let constituents = self.model.view().version().constituents();
+        let mut found = constituents.iter().enumerate().filter_map(|(column, &constituent)| {
+            let rate = self.model.content_rate(constituent, parameter) * per_plate;
+            let (over, under) = self.shares(constituent);
+            (rate > T::ZERO).then_some((column, rate * over, rate * under))
+        });
+        [found.next(), found.next()]
+    }
+}
+
+/// Where the results go.
+struct Rooms<'s, T> {
+    diffuse: &'s mut [T],
+    derivatives: &'s mut [T],
+    by_upper_share: Option<&'s mut [T]>,
+}
+
+/// All bands of a view, for one leaf: block by block, as in `kernel.rs`.
+struct Spectrum<'m, 'v, 's, T> {
+    interior: &'m TwoLayer<'v, T>,
+    leaf: &'m LeafParams<T>,
+    per_plate: T,
+    parameters: &'m [Parameter],
+    rooms: Rooms<'s, T>,
+}
+
+impl<T: Lanes> Task for Spectrum<'_, '_, '_, T> {
+    #[inline(always)]
+    fn run(mut self) {
+        let view = self.interior.model.view();
+        let m = (T::HALF * self.leaf.n_struct).into_lane();
+        let series = SlopeSeries::new(m);
+        let mut first = 0;
+        while first < view.len() {
+            let [upper, lower] = self.absorption(first);
+            let t_alpha = load(view.t_alpha(), first);
+            let t_90 = load(view.t_90(), first);
+            // isotropic light on both faces of every plate
+            let inner = [t_90, t_90, load(view.t_21(), first)];
+            let (over, under) = (piles(&upper, &inner, m, &series), piles(&lower, &inner, m, &series));
+            let zero = Block::of(T::Lane::ZERO);
+            let mut leaves = Band { d: zero, by_upper: zero, by_lower: zero, by_n: zero };
+            for i in 0..BLOCK {
+                let band = joined(t_alpha[i], t_90[i], &over.at(i), &under.at(i));
+                (leaves.d[i], leaves.by_n[i]) = (band.d, band.by_n);
+                (leaves.by_upper[i], leaves.by_lower[i]) = (band.by_upper, band.by_lower);
+            }
+            self.take(first, &upper, &lower, &leaves);
+            first += BLOCK;
+        }
+    }
+}
+
+impl<T: Lanes> Spectrum<'_, '_, '_, T> {
+    /// K of one layer of the upper and of the lower stack.
+    #[inline(always)]
+    fn absorption(&self, first: usize) -> [Block<T::Lane>; 2] {
+        let view = self.interior.model.view();
+        let mut stacks = [Block::of(T::Lane::ZERO); 2];
+        for (column, &constituent) in view.coefficients().zip(view.version().constituents()) {
+            let content = self.interior.model.content(self.leaf, constituent) * self.per_plate;
+            if content > T::ZERO {
+                let column = load(column, first);
+                let (over, under) = self.interior.shares(constituent);
+                for (k, share) in stacks.iter_mut().zip([over, under]) {
+                    let content = (share * content).into_lane();
+                    for i in 0..BLOCK {
+                        k[i] += content * column[i];
+                    }
+                }
+            }
+        }
+        stacks
+    }
+
+    /// Writes d and its derivatives of one block.
+    #[inline(always)]
+    fn take(&mut self, first: usize, upper: &Block<T::Lane>, lower: &Block<T::Lane>, leaves: &Band<Block<T::Lane>>) {
+        let view = self.interior.model.view();
+        let per_plate = self.per_plate.into_lane();
+        let Band { d, by_upper, by_lower, by_n } = leaves;
+        store_with(self.rooms.diffuse, first, |i| d[i]);
+        // never 0 here; without saying so, `chunks_exact_mut` brings a panic
+        let rows = self.rooms.derivatives.chunks_exact_mut(view.len().max(1));
+        for (&parameter, row) in self.parameters.iter().zip(rows) {
+            if parameter == Parameter::NStruct {
+                // K = S/N with S fixed
+                store_with(row, first, |i| by_n[i] - (by_upper[i] * upper[i] + by_lower[i] * lower[i]) * per_plate);
+                continue;
+            }
+            let mut slope = Block::of(T::Lane::ZERO);
+            for (column, over, under) in self.interior.rates(parameter, self.per_plate).into_iter().flatten() {
+                let column = load(view.coefficient(column), first);
+                let (over, under) = (over.into_lane(), under.into_lane());
+                for i in 0..BLOCK {
+                    slope[i] += column[i] * (by_upper[i] * over + by_lower[i] * under);
+                }
+            }
+            store_with(row, first, |i| slope[i]);
+        }
+        if let Some(row) = &mut self.rooms.by_upper_share {
+            // dK₁/df = 2 K_p/N = −dK₂/df
+            let mut pigments = Block::of(T::Lane::ZERO);
+            for (column, &constituent) in view.coefficients().zip(view.version().constituents()) {
+                if is_pigment(constituent) {
+                    let content = T::TWO * self.interior.model.content(self.leaf, constituent) * self.per_plate;
+                    let (column, content) = (load(column, first), content.into_lane());
+                    for i in 0..BLOCK {
+                        pigments[i] += content * column[i];
+                    }
+                }
+            }
+            store_with(row, first, |i| pigments[i] * (by_upper[i] - by_lower[i]));
+        }
+    }
+}
+
+/// What the two stacks hold unevenly.
+fn is_pigment(constituent: Parameter) -> bool {
+    matches!(constituent, Parameter::Cab | Parameter::Car | Parameter::Cant | Parameter::Cbrown)
 }
 
 /// Two stacks of `m` plates each, one on the other.
@@ -205,15 +280,20 @@ fn two_stacks<T: Real>(faces: Interface<T>, k_upper: T, k_lower: T, m: T, series
         let plate = Plate::new(inner, layer);
         pile(&plate, plate.slope(transmission_log_slope(k, layer.tau)), m, series)
     };
-    let (upper, lower) = (stack(k_upper), stack(k_lower));
+    joined(faces.t_alpha, faces.t_90, &stack(k_upper), &stack(k_lower))
+}
+
+/// One stack on the other, seen as PROSPECT sees a leaf.
+#[inline(always)]
+fn joined<T: Real>(t_alpha: T, t_90: T, upper: &Pile<T>, lower: &Pile<T>) -> Band<T> {
     //               T₁² R₂
     // R_iso = R₁ + ─────────
     //              1 − R₁ R₂
     let inverse = T::ONE / (T::ONE - upper.r * lower.r);
     let through2 = upper.t.squared();
     let r_iso = upper.r + through2 * lower.r * inverse;
-    let r_outer = T::ONE - faces.t_90;
-    let scale = faces.t_alpha / faces.t_90;
+    let r_outer = T::ONE - t_90;
+    let scale = t_alpha / t_90;
 
     // ∂R_iso/∂R₁, ∂R_iso/∂T₁, ∂R_iso/∂R₂
     let by_r1 = T::ONE + through2 * (lower.r * inverse).squared();
