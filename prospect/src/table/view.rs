@@ -168,11 +168,13 @@ impl<'a, T: Real> View<'a, T> {
         if bands == 0 || columns.len() != expected {
             return Err(Error::Length { slice: "columns", expected: expected.max(1), found: columns.len() });
         }
-        let sources = [self.t_alpha, self.t_90, self.t_21].into_iter().chain(self.coefficients());
-        for (target, source) in columns.chunks_exact_mut(bands).zip(sources) {
-            for (value, &wavelength) in target.iter_mut().zip(wavelengths) {
-                let (band, beyond) = self.wavelengths.locate(wavelength)?;
-                *value = between(source, band, beyond);
+        for (place, &wavelength) in wavelengths.iter().enumerate() {
+            let (band, beyond) = self.wavelengths.locate(wavelength)?;
+            let sources = [self.t_alpha, self.t_90, self.t_21].into_iter().chain(self.coefficients());
+            for (target, source) in columns.chunks_exact_mut(bands).zip(sources) {
+                if let Some(value) = target.get_mut(place) {
+                    *value = between(source, band, beyond);
+                }
             }
         }
         View::from_columns(self.version, Wavelengths::Listed(wavelengths), columns)
