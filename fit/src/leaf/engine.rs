@@ -258,9 +258,10 @@ impl<'a> Cost<'a> {
             normal.chi2 += residual.iter().map(|r| r * r).sum::<f64>();
             for (column, &i) in rest.chunks_exact_mut(bands).zip(&free) {
                 lobes.column(direction, i, &diffuse, column);
-                whitening.apply(column);
             }
-            let columns = rest.get(..free.len() * bands).unwrap_or_default();
+            let columns = rest.get_mut(..free.len() * bands).unwrap_or_default();
+            whitening.apply_to_all(columns, bands);
+            let columns = &*columns;
             for (place, column) in columns.chunks_exact(bands).enumerate() {
                 let i = free[place];
                 normal.score[i] += dot(column, residual);

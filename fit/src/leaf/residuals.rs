@@ -76,15 +76,42 @@ impl Whitening {
             }
             return;
         }
-        let mut slow = 0.0;
-        for (r, [left, gain, inverse]) in r.iter_mut().zip(&self.steps) {
-            slow *= left;
-            if *inverse > 0.0 {
-                let innovation = *r - slow;
-                slow += gain * innovation;
-                *r = innovation * inverse;
+        self.step_through([r]);
+    }
+
+    /// [`apply`](Self::apply) to several columns of `bands` numbers each, one after the other in memory.
+    pub fn apply_to_all(&self, columns: &mut [f64], bands: usize) {
+        // each step waits for the one before: four columns at a time fill the wait
+        let mut fours = columns.chunks_exact_mut((4 * bands).max(1));
+        for four in &mut fours {
+            let (a, rest) = four.split_at_mut(bands);
+            let (b, rest) = rest.split_at_mut(bands);
+            let (c, d) = rest.split_at_mut(bands);
+            if self.white.is_some() {
+                [a, b, c, d].into_iter().for_each(|column| self.apply(column));
             } else {
-                *r = 0.0;
+                self.step_through([a, b, c, d]);
+            }
+        }
+        fours.into_remainder().chunks_exact_mut(bands.max(1)).for_each(|column| self.apply(column));
+    }
+
+    /// The recursion, in columns side by side.
+    #[inline(always)]
+    fn step_through<const K: usize>(&self, mut columns: [&mut [f64]; K]) {
+        let bands = columns.iter().map(|column| column.len()).min().unwrap_or(0).min(self.steps.len());
+        columns = columns.map(|column| &mut column[..bands]);
+        let mut slow = [0.0; K];
+        for (band, [left, gain, inverse]) in self.steps[..bands].iter().enumerate() {
+            for (slow, column) in slow.iter_mut().zip(&mut columns) {
+                *slow *= left;
+                if *inverse > 0.0 {
+                    let innovation = column[band] - *slow;
+                    *slow += gain * innovation;
+                    column[band] = innovation * inverse;
+                } else {
+                    column[band] = 0.0;
+                }
             }
         }
     }
@@ -153,6 +180,23 @@ mod tests {
         let with_gap: f64 = white.iter().map(|r| r * r).sum();
         assert_eq!((gap.used(), white[1]), (3, 0.0));
         assert!((with_gap / quadratic_form(&model, &[410.0, 430.0, 450.0], &[0.01, 0.02, -0.01]) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn columns_together_are_whitened_as_each_alone() {
+        let nm = [410.0, 420.0, 430.0, 450.0, 700.0];
+        let bands = nm.len();
+        for model in [ResidualModel { slow_sd: 0.01, length_nm: 60.0, white_sd: 0.004 }, ResidualModel::white(0.01)] {
+            let whitening = Whitening::new(&model, &nm, |band| if band == 2 { 0.0 } else { 1.0 });
+            // one column, less than four, four, and more
+            for count in [0, 1, 3, 4, 11] {
+                let mut together: Vec<f64> = (0..count * bands).map(|i| (0.7 * i as f64).sin()).collect();
+                let mut alone = together.clone();
+                whitening.apply_to_all(&mut together, bands);
+                alone.chunks_exact_mut(bands).for_each(|column| whitening.apply(column));
+                assert_eq!(together, alone);
+            }
+        }
     }
 
     #[test]
