@@ -38,6 +38,20 @@ pub struct FitFailure(
     pub String,
 );
 
+impl FitFailure {
+    /// As many parameters as values: whatever was measured is met exactly, and the result says nothing about itself.
+    ///
+    /// - `values`: how many, and of what; `parameters`: how many that are not at a bound (or held by a prior); `remedy`: what to do.
+    fn exact(values: &str, parameters: f64, names: &[&str], remedy: &str) -> Self {
+        let count = if parameters.fract() == 0.0 { format!("{parameters}") } else { format!("{parameters:.1}") };
+        FitFailure(format!(
+            "no more values than parameters ({values} for {count} parameters: {}): any measurement would be fitted perfectly, and nothing is \
+             left to tell how good the numbers are. {remedy}",
+            names.join(", ")
+        ))
+    }
+}
+
 impl fmt::Display for FitFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)

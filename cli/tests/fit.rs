@@ -327,3 +327,58 @@ fn robust_fits_and_starts_of_ones_own_are_accepted() {
         assert_eq!(row["starts"], "2");
     }
 }
+
+/// Three directions in one band, two in the next.
+const THREE_DIRECTIONS: &str = "wavelength_nm,theta_s_deg,theta_v_deg,phi_v_deg,brdf
+550,40,0,0,0.03
+550,40,40,180,0.09
+550,40,60,180,0.05
+650,40,0,0,0.02
+650,40,40,180,0.08
+";
+
+#[test]
+fn data_that_any_parameters_meet_are_refused_by_every_model_with_their_count_and_the_remedy() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("leaf.csv"), THREE_DIRECTIONS).unwrap();
+    fs::write(folder.path().join("oak.csv"), "wavelength_nm,reflectance\n550,0.1\n700,0.2\n").unwrap();
+    let reason = "no more values than parameters";
+    for (arguments, parts) in [
+        (&["leaf.csv", "--model", "bands"][..], ["3 values", "3 parameters: k_l, n, sigma", "more directions"]),
+        (&["leaf.csv", "--model", "surface"], ["3 directions", "3 parameters: k_l, n, sigma", "--hold n=1.5"]),
+        (&["leaf.csv", "--model", "leaf", "--method", "joint"], ["5 values", "n, sigma, n_struct, cab", "--hold"]),
+        (&["oak.csv", "--model", "prospect"], ["2 values", "7 parameters: n_struct, cab", "--fix"]),
+    ] {
+        let output = run(folder.path(), &[&["fit"], arguments, &["-o", "out"]].concat());
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {message}");
+        for part in parts.into_iter().chain([reason, arguments[0]]) {
+            assert!(message.contains(part), "{arguments:?}: no {part:?} in: {message}");
+        }
+        let leaves = rows(&folder.path().join("out/leaves.csv"));
+        assert_eq!((leaves[0]["status"].as_str(), leaves[0]["rmse"].as_str()), ("failed", ""), "{arguments:?}");
+        assert!(leaves[0]["message"].contains(reason), "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_parameter_held_or_standard_deviations_give_few_directions_their_standard_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("leaf.csv"), THREE_DIRECTIONS).unwrap();
+    let with_sd = THREE_DIRECTIONS
+        .replace("brdf\n", "brdf,sd\n")
+        .lines()
+        .enumerate()
+        .fold(String::new(), |text, (line, row)| text + row + if line > 0 { ",0.002\n" } else { "\n" });
+    fs::write(folder.path().join("sd.csv"), with_sd).unwrap();
+    for (arguments, known) in [
+        (&["leaf.csv", "--model", "surface", "--hold", "n=1.4"][..], "sigma_se"),
+        (&["sd.csv", "--model", "surface"], "sigma_se"),
+        (&["sd.csv", "--model", "bands"], "sigma_se"),
+    ] {
+        let output = run(folder.path(), &[&["fit"], arguments, &["-o", "out"]].concat());
+        assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
+        let bands = rows(&folder.path().join("out/bands.csv"));
+        assert!(number(&bands[0], known) > 0.0, "{arguments:?}: {:?}", bands[0]);
+    }
+}

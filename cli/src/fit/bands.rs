@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 
 use leafbrdf_core::{Angle, Grade, Illumination, Normalization, Surface};
-use leafbrdf_fit::{AtBound, BandFit, BandResult, LeafBandsOptions, LeafData, why_no_error};
+use leafbrdf_fit::{AtBound, BandFit, BandResult, Identifiability, LeafBandsOptions, LeafData, why_no_error};
 use rayon::prelude::*;
 
 use super::tables::{self, BAND_COLUMNS, Budget, write_budgets};
@@ -35,6 +35,18 @@ pub fn fit_bands(
 ) -> Result<BandsOutcome, FitFailure> {
     let data = LeafData { geometries: &selected.geometries, brdf: &selected.brdf, sd: selected.sd.as_deref() };
     let bands = leafbrdf_fit::fit_bands(&data, options, progress)?;
+    let exact = |fit: &BandFit<f64>| fit.identifiability.contains(&Identifiability::NoDegreesOfFreedom);
+    let mut fits = bands.iter().flatten().peekable();
+    if fits.peek().is_some() && fits.all(exact) {
+        // a band that is met exactly is told among others; alone it is no result
+        let most = bands.iter().flatten().map(|fit| fit.n_obs).max().unwrap_or(0);
+        let free = |fit: &BandFit<f64>, p: usize| fit.at_bound[p] == AtBound::Free;
+        let sought = |p: &usize| bands.iter().flatten().any(|fit| free(fit, *p));
+        let names: Vec<&str> = (0..3).filter(sought).map(|p| PARAMETERS[p]).collect();
+        let values = format!("{most} values in the fullest of {} bands", bands.len());
+        let remedy = "Measure more directions, or hold parameters with --model surface, as with --hold n=1.5";
+        return Err(FitFailure::exact(&values, names.len() as f64, &names, remedy));
+    }
 
     let sources = selected
         .sources_deg()

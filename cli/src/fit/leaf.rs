@@ -46,6 +46,16 @@ pub fn fit_leaf(leaf: &Measurement, selected: Selected, options: &LeafOptions) -
         sd: selected.sd.as_deref(),
     };
     let fit = fit(&data, options).map_err(|error| FitFailure(error.to_string()))?;
+    let sought: Vec<&str> =
+        (0..NAMES.len()).filter(|&i| fit.knowledge[i] == Knowledge::NoDegreesOfFreedom).map(|i| NAMES[i]).collect();
+    if !sought.is_empty() {
+        let values = match fit.n_effective {
+            all if all == fit.n_obs as f64 => format!("{all} values"),
+            fewer => format!("{} values, worth {fewer:.1} independent ones,", fit.n_obs),
+        };
+        let remedy = "Measure more directions or wavelengths, or hold parameters with --fix or --hold";
+        return Err(FitFailure::exact(&values, sought.len() as f64, &sought, remedy));
+    }
     let mut outcome = LeafOutcome { selected, fit, options: options.clone(), warnings: Vec::new(), dhrf: Vec::new() };
     let sources = outcome.selected.sources_deg();
     let budget = sources.into_iter().map(|theta| outcome.budget(theta)).collect::<Result<_, DomainError>>();

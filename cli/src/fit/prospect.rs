@@ -6,6 +6,7 @@ use leafbrdf_fit::band::Weights;
 use leafbrdf_fit::hemispherical::{
     Free, HemisphericalProblem, LeafFit, LeafFitOptions, Measured, PriorN, Spectra, fit_leaf, n_prior,
 };
+use leafbrdf_fit::{AtBound, Identifiability};
 use leafbrdf_prospect::table::{FIRST_NM, LAST_NM};
 use leafbrdf_prospect::{LeafParams, Parameter, Prospect, Version};
 
@@ -131,6 +132,14 @@ pub fn fit_prospect(leaf: &LeafSpectra, options: &ProspectOptions) -> Result<Pro
     };
     let spectra = Spectra { reflectance: spectrum(0), transmittance: spectrum(1) };
     let fit = fit_leaf(&HemisphericalProblem { model, spectra, held }, &solver).map_err(|error| words(&error))?;
+
+    if fit.estimates.iter().any(|one| one.identifiability == Identifiability::NoDegreesOfFreedom) {
+        let sought = fit.estimates.iter().filter(|one| one.at_bound == AtBound::Free);
+        let sought: Vec<&str> = sought.map(|one| one.parameter.name()).collect();
+        let values = weights.iter().flatten().filter(|weight| **weight > 0.0).count();
+        let remedy = "Measure more wavelengths, or hold parameters with --fix";
+        return Err(FitFailure::exact(&format!("{values} values"), sought.len() as f64, &sought, remedy));
+    }
 
     let mut modelled = [vec![0.0; kept.len()], vec![0.0; kept.len()]];
     let [reflectance, transmittance] = &mut modelled;

@@ -46,6 +46,7 @@ pub fn fit_surface(
 ) -> Result<SurfaceOutcome, FitFailure> {
     let data = SurfaceData { directions: &selected.vectors, brdf: &selected.brdf, sd: selected.sd.as_deref() };
     let fit = leafbrdf_fit::surface::fit_surface(&data, options)?;
+    exact(&selected, &fit)?;
     let sources = selected.sources_deg();
     let dhrf = sources.into_iter().map(|theta| dhrf(&fit, options, theta)).collect::<Result<_, _>>();
     let dhrf = dhrf.map_err(|error: DomainError| FitFailure(error.to_string()))?;
@@ -53,6 +54,27 @@ pub fn fit_surface(
         SurfaceOutcome { selected, fit, options: options.clone(), warnings: Vec::new(), k_l_bounds, dhrf };
     outcome.warnings = outcome.warn(leaf);
     Ok(outcome)
+}
+
+/// Refuses a surface that any measurement in these directions would have fitted.
+fn exact(selected: &Selected, fit: &SurfaceFit) -> Result<(), FitFailure> {
+    if !fit.errors.knowledge.contains(&Knowledge::NoDegreesOfFreedom) {
+        return Ok(());
+    }
+    let width = selected.vectors.len();
+    let seen = |v: &usize| selected.brdf.iter().skip(*v).step_by(width).any(|y| !y.is_nan());
+    let directions = (0..width).filter(seen).count();
+    let sought: Vec<usize> = (0..PARAMETERS.len()).filter(|&i| is_open(fit, i) && !fit.unseen[i]).collect();
+    // a prior is a value too
+    let count: f64 = sought.iter().map(|&i| 1.0 - fit.errors.prior_share[i]).sum();
+    let names: Vec<&str> = ["k_l"].into_iter().chain(sought.iter().map(|&i| PARAMETERS[i].0)).collect();
+    let values = format!("{directions} directions");
+    Err(FitFailure::exact(
+        &values,
+        1.0 + count,
+        &names,
+        "Measure more directions, or hold parameters, as with --hold n=1.5",
+    ))
 }
 
 /// DHRF_spec of the leaf's own surface at θ_s from the leaf's normal: a tilt in the holder has no part in it.
@@ -173,7 +195,7 @@ impl SurfaceOutcome {
                 Knowledge::Held => "held",
                 Knowledge::AtBound => "held at its bound",
                 Knowledge::NotIdentifiable => "not identifiable from these directions",
-                Knowledge::NoDegreesOfFreedom => "no more directions than parameters",
+                Knowledge::NoDegreesOfFreedom => "no more values than parameters",
             };
             Some(format!("{} {why}", PARAMETERS[i].0))
         });

@@ -187,7 +187,7 @@ impl LeafOutcome {
                 Knowledge::AtBound => "at a bound",
                 Knowledge::NotIdentifiable => "not identifiable",
                 Knowledge::PriorOnly => "from its prior alone",
-                Knowledge::NoDegreesOfFreedom => "no degrees of freedom",
+                Knowledge::NoDegreesOfFreedom => "no more values than parameters",
             }
         };
         let mut one = json!({
@@ -263,10 +263,6 @@ impl LeafOutcome {
         let prior = names(&|i| self.has(i) && fit.knowledge[i] == Knowledge::PriorOnly);
         if !prior.is_empty() {
             warnings.push(format!("the data say nothing beyond the prior, and these are left empty: {prior}"));
-        }
-        let no_freedom = names(&|i| self.has(i) && fit.knowledge[i] == Knowledge::NoDegreesOfFreedom);
-        if !no_freedom.is_empty() {
-            warnings.push(format!("no more independent values than parameters: no standard errors for {no_freedom}"));
         }
         for i in (0..NAMES.len()).filter(|&i| fit.at_bound[i] != AtBound::Free) {
             let value = fit.x[i] * unit(i);

@@ -44,10 +44,6 @@ impl ProspectOutcome {
         if !unknown.is_empty() {
             warnings.push(format!("not identifiable from these spectra, and without standard error: {unknown}"));
         }
-        let no_freedom = named(&|identifiability| identifiability == Identifiability::NoDegreesOfFreedom);
-        if !no_freedom.is_empty() {
-            warnings.push(format!("no more values than parameters: no standard errors for {no_freedom}"));
-        }
         let vague =
             self.fit.estimates.iter().filter(|one| one.standard_error.is_some_and(|error| error > 0.5 * one.value));
         let vague: Vec<&str> = vague.map(|estimate| estimate.parameter.name()).collect();

@@ -114,7 +114,7 @@ impl SurfaceOutcome {
             Knowledge::Held => "held",
             Knowledge::AtBound => "at a bound",
             Knowledge::NotIdentifiable => "not identifiable",
-            Knowledge::NoDegreesOfFreedom => "no degrees of freedom",
+            Knowledge::NoDegreesOfFreedom => "no more values than parameters",
         };
         let mut one = json!({
             "value": optional(self.value(i)),
@@ -165,13 +165,6 @@ impl SurfaceOutcome {
         let unknown = names(&|i| errors.knowledge[i] == Knowledge::NotIdentifiable && !fit.unseen[i]);
         if !unknown.is_empty() {
             warnings.push(format!("not identifiable from these directions, and without standard error: {unknown}"));
-        }
-        let no_freedom = names(&|i| errors.knowledge[i] == Knowledge::NoDegreesOfFreedom);
-        if !no_freedom.is_empty() {
-            warnings.push(format!(
-                "no more directions than parameters: no standard errors for {no_freedom}. Measure more directions, or hold some \
-                 with --hold"
-            ));
         }
         for i in (0..PARAMETERS.len()).filter(|&i| fit.at_bound[i] != AtBound::Free) {
             let (name, value) = (PARAMETERS[i].0, fit.x[i] * PARAMETERS[i].1);
