@@ -164,26 +164,30 @@ impl Axis {
         }
     }
 
-    /// x and dx/du.
+    /// x and dx/du; the bounds themselves at the bounds of u.
     pub fn value(&self, u: f64) -> (f64, f64) {
-        match *self {
-            Axis::Held(value) => (value, 0.0),
-            Axis::Plain(bounds) => (bounds.clip(u), 1.0),
-            Axis::Log(bounds) => {
-                let x = u.exp();
-                (bounds.clip(x), x)
-            }
-            Axis::Fresnel(bounds) => {
+        let (x, slope) = match *self {
+            Axis::Held(value) => return (value, 0.0),
+            Axis::Plain(_) => (u, 1.0),
+            Axis::Log(_) => (u.exp(), u.exp()),
+            Axis::Fresnel(_) => {
                 let f0 = u.exp();
                 let [n, slope, _] = n_from_f0(f0);
-                (bounds.clip(n), slope * f0)
+                (n, slope * f0)
             }
-            // the clips absorb rounding only: u stays inside its own bounds
-            Axis::Shifted(bounds, origin) => {
-                let shifted = u.exp();
-                (bounds.clip(shifted - origin), shifted)
-            }
-        }
+            Axis::Shifted(_, origin) => (u.exp() - origin, u.exp()),
+        };
+        let (Axis::Plain(bounds) | Axis::Log(bounds) | Axis::Fresnel(bounds) | Axis::Shifted(bounds, _)) = *self else {
+            return (x, slope);
+        };
+        let ends = self.bounds();
+        let x = match () {
+            () if u <= ends.lower => bounds.lower,
+            () if u >= ends.upper => bounds.upper,
+            // the clip absorbs rounding only: u stays inside its own bounds
+            () => bounds.clip(x),
+        };
+        (x, slope)
     }
 
     /// The bounds of u; held: a unit interval around 0 that nothing pushes against.
@@ -207,6 +211,9 @@ mod tests {
             let (lower, upper) = if place == model::N { (1.1, 3.0) } else { (0.01, 2.0) };
             let treatment = Treatment::Free { bounds: Interval::new(lower, upper), prior: None };
             let axis = Axis::new(place, &treatment);
+            let ends = axis.bounds();
+            // what is said to sit at a bound sits there, to the bit
+            assert_eq!((axis.value(ends.lower).0, axis.value(ends.upper).0), (lower, upper), "{}", NAMES[place]);
             for share in [0.05, 0.4, 0.9] {
                 let x = lower + share * (upper - lower);
                 let u = axis.coordinate(x);
