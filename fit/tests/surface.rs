@@ -160,37 +160,53 @@ fn the_principal_plane_does_not_see_a_lateral_tilt() {
     assert_eq!(fit.parameters[5], Treatment::Held(0.0));
 }
 
+/// As [`surface`], what has a prior drawn from it: only then are a prior's share and the errors that rest on it to be tested.
+fn drawn(options: &SurfaceOptions, random: &mut Random) -> [f64; PARAMETERS] {
+    let mut x = surface(options, random);
+    for (x, one) in x.iter_mut().zip(&options.parameters) {
+        if let Treatment::Free { bounds, prior: Some(prior) } = one {
+            *x = loop {
+                let value = prior.mean + prior.sd * random.normal();
+                if value > bounds.lower && value < bounds.upper {
+                    break value;
+                }
+            };
+        }
+    }
+    x
+}
+
+/// What stands between a leaf and its measurement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Spoiled {
+    /// White noise of the paper's goniometer: 1 % of the value and 0.003 sr⁻¹.
+    Noise,
+    /// The same, and every value with its standard deviation.
+    NoiseWithSd,
+    /// A misfit of the model: one draw a direction, common to all bands but for a slow change with the wavelength.
+    Misfit,
+}
+
+impl Spoiled {
+    fn sd(brdf: f64) -> f64 {
+        (0.01 * brdf).hypot(0.003)
+    }
+
+    fn spoil(self, brdf: &[f64], directions: usize, random: &mut Random) -> Vec<f64> {
+        match self {
+            Spoiled::Noise | Spoiled::NoiseWithSd => with_noise(brdf, random),
+            Spoiled::Misfit => with_misfit(brdf, directions, random),
+        }
+    }
+}
+
 /// White noise of the paper's goniometer: 1 % of the value and 0.003 sr⁻¹.
 fn with_noise(brdf: &[f64], random: &mut Random) -> Vec<f64> {
     brdf.iter().map(|y| y * (1.0 + 0.01 * random.normal()) + 0.003 * random.normal()).collect()
 }
 
-/// How often the truth lies within 1 and within 1.96 (of Student's t: the 95 % point) standard errors, over `leaves` leaves.
-fn coverage(
-    leaves: u64,
-    options: &SurfaceOptions,
-    spoil: impl Fn(&[f64], &mut Random) -> Vec<f64>,
-) -> [[f64; 2]; PARAMETERS] {
-    let directions = hemisphere(40.0);
-    let mut inside = [[0.0; 2]; PARAMETERS];
-    for seed in 0..leaves {
-        let mut random = Random(1000 + seed);
-        let truth = surface(options, &mut random);
-        let data = spoil(&leaf(&directions, options, &truth, 40), &mut random);
-        let found = fit(&directions, &data, options);
-        for i in 0..PARAMETERS {
-            let Some(error) = found.errors.standard_errors[i] else { continue };
-            let off = (found.x[i] - truth[i]).abs() / error;
-            inside[i][0] += f64::from(u8::from(off < 1.0)) / leaves as f64;
-            inside[i][1] += f64::from(u8::from(off < 1.96)) / leaves as f64;
-        }
-    }
-    inside
-}
-
 /// A misfit of the model: one draw a direction, common to all bands but for a slow change with the wavelength.
-fn with_misfit(brdf: &[f64], random: &mut Random) -> Vec<f64> {
-    let directions = hemisphere(40.0).len();
+fn with_misfit(brdf: &[f64], directions: usize, random: &mut Random) -> Vec<f64> {
     let bands = brdf.len() / directions;
     let draws: Vec<[f64; 2]> = (0..directions).map(|_| [0.004 * random.normal(), 0.002 * random.normal()]).collect();
     brdf.iter()
@@ -202,20 +218,111 @@ fn with_misfit(brdf: &[f64], random: &mut Random) -> Vec<f64> {
         .collect()
 }
 
+/// A parameter over many leaves.
+#[derive(Clone, Copy, Debug, Default)]
+struct Score {
+    /// Leaves that have an error of it.
+    count: f64,
+    /// Leaves whose truth lies within 1 and within 1.96 standard errors.
+    inside: [f64; 2],
+    /// Σ (found − true)² and Σ (standard error)².
+    squares: [f64; 2],
+}
+
+impl Score {
+    fn shares(&self) -> [f64; 2] {
+        self.inside.map(|inside| inside / self.count)
+    }
+
+    /// Root mean square of the errors made over that of the errors told.
+    fn made_over_told(&self) -> f64 {
+        (self.squares[0] / self.squares[1]).sqrt()
+    }
+}
+
+/// How far off, and how far the standard errors say, over `leaves` leaves.
+fn score(
+    leaves: u64,
+    directions: &[DirectionVectors<f64>],
+    options: &SurfaceOptions,
+    spoiled: Spoiled,
+    truth: impl Fn(&mut Random) -> [f64; PARAMETERS],
+) -> [Score; PARAMETERS] {
+    let mut scores = [Score::default(); PARAMETERS];
+    for seed in 0..leaves {
+        let mut random = Random(1000 + seed);
+        let truth = truth(&mut random);
+        let clean = leaf(directions, options, &truth, 40);
+        let data = spoiled.spoil(&clean, directions.len(), &mut random);
+        let sd: Vec<f64> = clean.iter().map(|y| Spoiled::sd(*y)).collect();
+        let sd = (spoiled == Spoiled::NoiseWithSd).then_some(&sd[..]);
+        let found = fit_surface(&SurfaceData { directions, brdf: &data, sd }, options).unwrap();
+        for (i, score) in scores.iter_mut().enumerate() {
+            let Some(error) = found.errors.standard_errors[i] else { continue };
+            let off = (found.x[i] - truth[i]).abs();
+            score.count += 1.0;
+            for (inside, errors) in score.inside.iter_mut().zip([1.0, 1.96]) {
+                *inside += f64::from(u8::from(off < errors * error));
+            }
+            score.squares[0] += off * off;
+            score.squares[1] += error * error;
+        }
+    }
+    scores
+}
+
+/// 68 % and 95 % as issue and documentation promise them: 60–76 % and 90–98 %.
+fn honest([one, two]: [f64; 2]) -> bool {
+    one > 0.60 && one < 0.76 && two > 0.90 && two < 0.98
+}
+
 #[test]
 fn standard_errors_cover_the_truth_as_often_as_they_say() {
-    // 300 leaves: a share of 0.68 is known to ±0.027, one of 0.95 to ±0.013. With white noise the priors are weighed as if all
-    // bands shared one misfit, and errors are taken larger rather than smaller: with six parameters up to 0.79 and 0.99.
-    for (options, most) in [
-        (SurfaceOptions::paper(), [0.76, 0.98]),
-        (SurfaceOptions::paper().with_ggx().with_p1().with_tilt(), [0.81, 0.997]),
-    ] {
-        for (what, inside) in
-            [("noise", coverage(300, &options, with_noise)), ("misfit", coverage(300, &options, with_misfit))]
-        {
+    // 300 leaves: a share of 0.68 is known to ±0.027, one of 0.95 to ±0.013
+    let directions = hemisphere(40.0);
+    for options in [SurfaceOptions::paper(), SurfaceOptions::paper().with_ggx().with_p1().with_tilt()] {
+        for spoiled in [Spoiled::Noise, Spoiled::Misfit] {
+            let scores = score(300, &directions, &options, spoiled, |random| drawn(&options, random));
             for i in (0..PARAMETERS).filter(|&i| options.parameters[i].is_free()) {
-                assert!(inside[i][0] > 0.60 && inside[i][0] < most[0], "{what} {i}: {inside:?}");
-                assert!(inside[i][1] > 0.90 && inside[i][1] < most[1], "{what} {i}: {inside:?}");
+                assert_eq!(scores[i].count, 300.0);
+                assert!(honest(scores[i].shares()), "{spoiled:?} {}: {:?}", NAMES[i], scores[i].shares());
+            }
+        }
+    }
+}
+
+#[test]
+fn errors_are_honest_where_two_or_three_views_see_a_peak_that_is_noisier_than_the_rest() {
+    // Table 4's leaves. 100 of each: a root mean square is known to ±7 %, and errors made and told both are one. With one noise
+    // for all directions laurel's σ has 1.4.
+    let four_sources: Vec<_> = [8.0, 21.0, 41.0, 60.0].into_iter().flat_map(hemisphere).collect();
+    let options = SurfaceOptions::paper();
+    for (leaf, n, sigma) in [("laurel", 1.22, 0.078), ("beech", 1.56, 0.29), ("hazel", 1.68, 0.46)] {
+        for spoiled in [Spoiled::Noise, Spoiled::NoiseWithSd] {
+            let scores = score(100, &four_sources, &options, spoiled, |_| [n, sigma, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            for i in [0, 1] {
+                let ratio = scores[i].made_over_told();
+                assert!(ratio > 0.8 && ratio < 1.2, "{leaf} {spoiled:?} {}: {ratio}", NAMES[i]);
+                assert!(scores[i].shares()[1] > 0.90, "{leaf} {spoiled:?} {}: {:?}", NAMES[i], scores[i]);
+            }
+        }
+    }
+}
+
+#[test]
+fn errors_from_twelve_views_are_honest_under_noise_that_grows_with_the_light() {
+    // 300 leaves: ±0.027, ±0.013
+    let directions = principal_plane(40.0);
+    for options in [SurfaceOptions::paper(), SurfaceOptions::paper().with_tilt()] {
+        for spoiled in [Spoiled::Noise, Spoiled::NoiseWithSd] {
+            let scores = score(300, &directions, &options, spoiled, |random| {
+                let mut x = drawn(&options, random);
+                // the plane of incidence does not see it
+                x[5] = 0.0;
+                x
+            });
+            for i in [0, 1, 4].into_iter().filter(|&i| options.parameters[i].is_free()) {
+                assert!(honest(scores[i].shares()), "{spoiled:?} {}: {:?}", NAMES[i], scores[i].shares());
             }
         }
     }

@@ -1,20 +1,39 @@
-//! Standard errors that do not count one misfit 400 times.
+//! Standard errors that do not count one misfit 400 times, and do not take a noisy peak for a quiet one.
 //!
 //! What a surface model leaves unexplained on a real leaf is its own imperfection: smooth over the wavelengths, so that 400 bands
-//! see one and the same residual. The errors here take directions as the independent draws and let the bands be correlated in
-//! any way (a sandwich, A⁻¹ M A⁻¹ with A = JᵀWJ):
+//! see one and the same residual. Noise, on the other hand, is larger where more light comes from. The errors here take directions
+//! as the independent draws, let the bands be correlated in any way, and let every direction have a size of its own: a sandwich,
+//! A⁻¹ M A⁻¹ with A = JᵀWJ (priors added), whose M is the larger, parameter by parameter, of two estimates.
+//!
+//! **All directions alike.** Residuals of all directions together estimate the covariance between bands:
 //!
 //! ```text
-//! M_ij = Σ_v Σ_λλ' ω J_λvi Ω_λλ' J_λ'vj ω,     Ω_λλ' = Σ_v r_λv r_λ'v / (V − 1 − p)
+//! M_ij = Σ_v Σ_λλ' ω J_λvi Ω_λλ' J_λ'vj ω,     Ω_λλ' = Σ_v r_λv r_λ'v / ν,     ν = V − 1 − p
 //! ```
 //!
-//! Ω is never built: J is linear in k_L(λ), so that two sums a direction, Σ_λ r and Σ_λ k_L r, say all that M needs. White noise
-//! comes out as white noise (the sums shrink), a misfit common to all bands as a single draw a direction. The larger of this
-//! pooled estimate and of the plain sum over each direction's own scores (which sees that residuals are larger where the leaf is
-//! brighter) is taken.
+//! Ω is never built: J is linear in k_L(λ), so that two sums a direction, Σ_λ r and Σ_λ k_L r, say all that M needs.
+//!
+//! **Each direction its own size.** With c_i the row of A⁻¹ that belongs to a parameter,
+//!
+//! ```text
+//! variance_i = f_i Σ_v c_iᵀ R_v W_v R_vᵀ c_i,     W_v = Σ_λ ω² J_λv J_λvᵀ r_λv²/(1 − h_λv)
+//! f_i = 1/ν Σ_v (c_iᵀ Σ_λ ω J_λv r_λv)²/(c_iᵀ W_v c_i),     1 ≤ f_i ≤ B
+//! ```
+//!
+//! W_v is what a direction would contribute if its bands were independent; it knows the size of its noise from all B bands, however
+//! few directions see the peak. f_i is how many times more the bands' sum scatters than that, 1 for white noise and B for one misfit
+//! common to all; every direction has the same say in it. h is what k_L takes of a residual, and R_v = (1 − φ_i H_v)^(−½) gives back
+//! what the parameters take of it (H_v: the direction's share in its own prediction, CR2 of Bell and McCaffrey 2002): of the part
+//! that is common to the bands, φ_i = (f_i − 1)/(B − 1), and not of their scatter, which a few parameters cannot follow.
+//!
+//! Priors pull the fit off the data, and what they leave would pass for misfit; residuals are therefore taken after one more
+//! linear step without priors, in which all p parameters follow the data.
 
-use std::vec;
-use std::vec::Vec;
+mod clusters;
+mod matrix;
+
+use clusters::{Clusters, Seen};
+use matrix::{Matrix, Root, Vector, ZERO, condition, form, product, rescaled};
 
 use super::model::{DirectionValue, PARAMETERS};
 use super::search::Treatment;
@@ -39,7 +58,8 @@ pub enum Knowledge {
 /// Errors of the surface's parameters [n, σ, a, b, t_x, t_y, e] (angles in radians).
 #[derive(Clone, Debug)]
 pub struct Errors {
-    /// Standard errors; `None` where [`Knowledge`] says why.
+    /// Standard errors, in the parameters' units (angles in radians); `None` where [`Knowledge`] says why. They assume neither
+    /// one noise for all directions nor independent bands; what directions share with their neighbours they do not see.
     pub standard_errors: [Option<f64>; PARAMETERS],
     /// Covariances of those that have an error, 0 elsewhere.
     pub covariance: [[f64; PARAMETERS]; PARAMETERS],
@@ -54,6 +74,7 @@ pub struct Errors {
     /// noise.
     pub effective_bands: f64,
     /// Degrees of freedom that the errors rest on: directions − 1 − parameters; for a 95 % interval take Student's t with so many.
+    /// Where priors alone make up for missing directions, a parameter counts by the share that its prior does not know.
     pub degrees_of_freedom: f64,
 }
 
@@ -101,190 +122,49 @@ pub(super) fn leverage(values: &[DirectionValue<f64>], band: &Band<'_>) -> [f64;
 }
 
 pub(super) fn estimate<'a>(problem: &Problem<'_>, bands: impl Iterator<Item = Band<'a>> + Clone) -> Errors {
-    let values = problem.values;
     let free: [bool; PARAMETERS] = core::array::from_fn(|i| {
         problem.parameters[i].is_free() && problem.at_bound[i] == AtBound::Free && !problem.unseen[i]
     });
-    let directions = values.len();
-    let mut normal = [[0.0; PARAMETERS]; PARAMETERS];
-    let mut scores = vec![[0.0; PARAMETERS]; directions];
-    // Σ_λ √ω r J'_u for every pair of directions; with equal weights two sums a direction are enough
-    let mut seen = vec![false; directions];
-    let mut sums = vec![[0.0; 2]; directions];
-    let mut cross = if problem.uniform { Vec::new() } else { vec![[0.0; PARAMETERS]; directions * directions] };
-    let (mut plain, mut values_used) = (0.0, 0.0);
-    for band in bands.clone() {
-        let taken = leverage(values, &band);
-        let slope = |value: &DirectionValue<f64>| -> [f64; PARAMETERS] {
-            core::array::from_fn(|i| {
-                value.d_specular[i] + band.k_lambert * value.d_diffuse[i] - taken[i] * value.diffuse
-            })
-        };
-        for (v, value) in values.iter().enumerate() {
-            let (w, r) = (band.weight[v], band.residual[v]);
-            if !(w > 0.0) {
-                continue;
-            }
-            seen[v] = true;
-            plain += w * r * r;
-            values_used += 1.0;
-            let j = slope(value);
-            for i in 0..PARAMETERS {
-                scores[v][i] += w * r * j[i];
-                for k in 0..=i {
-                    normal[i][k] += w * j[i] * j[k];
-                }
-            }
-            if problem.uniform {
-                sums[v][0] += r;
-                sums[v][1] += band.k_lambert * r;
-            } else {
-                let root = w.sqrt();
-                for (u, other) in cross.iter_mut().skip(v * directions).zip(0..directions) {
-                    let scaled = band.weight[other].sqrt() * band.residual[other] * root;
-                    for i in 0..PARAMETERS {
-                        u[i] += scaled * j[i];
-                    }
-                }
-            }
-        }
-    }
-    for i in 0..PARAMETERS {
-        for k in 0..i {
-            normal[k][i] = normal[i][k];
-        }
-    }
+    let seen = Seen::new(problem.values, &free, bands.clone());
+    let normal = seen.normal;
 
-    let prior: [f64; PARAMETERS] =
+    let prior: Vector =
         problem.parameters.map(|one| one.prior().map_or(0.0, |prior| problem.prior_variance / (prior.sd * prior.sd)));
-    let prior_share: [f64; PARAMETERS] = core::array::from_fn(|i| match normal[i][i] + prior[i] {
+    let prior_share: Vector = core::array::from_fn(|i| match normal[i][i] + prior[i] {
         total if free[i] && total > 0.0 => prior[i] / total,
         _ => 0.0,
     });
+    let (inverse, condition, singular) = invert(&normal, &prior, &free);
+
+    // what no parameter can follow, prior or not; where there are too few directions for that, what the fit leaves
     let parameters: f64 = (0..PARAMETERS).filter(|&i| free[i]).map(|i| 1.0 - prior_share[i]).sum();
-    let seen_directions = seen.iter().filter(|seen| **seen).count() as f64;
-    let degrees_of_freedom = seen_directions - 1.0 - parameters;
-
-    // pooled over the directions
-    let mut pooled = [[0.0; PARAMETERS]; PARAMETERS];
-    if problem.uniform {
-        let first = bands.clone().next();
-        let projected: Vec<[[f64; PARAMETERS]; 2]> = match &first {
-            None => Vec::new(),
-            Some(band) => {
-                let at = |k: f64| leverage(values, &Band { k_lambert: k, ..*band });
-                let (alpha, with_one) = (at(0.0), at(1.0));
-                let on = |value: &DirectionValue<f64>| {
-                    [
-                        core::array::from_fn(|i| value.d_specular[i] - alpha[i] * value.diffuse),
-                        core::array::from_fn(|i| value.d_diffuse[i] - (with_one[i] - alpha[i]) * value.diffuse),
-                    ]
-                };
-                values.iter().map(on).collect()
-            }
-        };
-        let mut second = [[0.0; 2]; 2];
-        for sum in &sums {
-            for a in 0..2 {
-                for b in 0..2 {
-                    second[a][b] += sum[a] * sum[b];
-                }
-            }
-        }
-        for (v, [d, e]) in projected.iter().enumerate() {
-            let w = first.as_ref().map_or(0.0, |band| band.weight[v]);
-            let w2 = w * w;
-            for i in 0..PARAMETERS {
-                for k in 0..PARAMETERS {
-                    pooled[i][k] += w2
-                        * (d[i] * second[0][0] * d[k]
-                            + second[0][1] * (d[i] * e[k] + e[i] * d[k])
-                            + e[i] * second[1][1] * e[k]);
-                }
-            }
-        }
+    let rest = seen.directions() - 1.0 - parameters;
+    let root = Root::new(&normal, &core::array::from_fn(|i| free[i] && !singular[i]));
+    let without_priors = seen.directions() - 1.0 - root.rank as f64;
+    let (step, degrees_of_freedom) = if prior_share.iter().any(|share| *share > 0.0) && without_priors >= 1.0 {
+        (root.solve(&seen.gradient), without_priors)
     } else {
-        for u in &cross {
-            for i in 0..PARAMETERS {
-                for k in 0..PARAMETERS {
-                    pooled[i][k] += u[i] * u[k];
-                }
-            }
-        }
-    }
-    let rest = degrees_of_freedom.max(1.0);
-    for row in &mut pooled {
-        for x in row {
-            *x /= rest;
-        }
-    }
-    let mut own = [[0.0; PARAMETERS]; PARAMETERS];
-    for score in &scores {
-        for i in 0..PARAMETERS {
-            for k in 0..PARAMETERS {
-                own[i][k] += score[i] * score[k];
-            }
-        }
-    }
-    let enough = degrees_of_freedom > 0.0;
-    if !enough && problem.known_sd {
-        pooled = normal;
-        own = [[0.0; PARAMETERS]; PARAMETERS];
-    }
+        ([0.0; PARAMETERS], rest)
+    };
+    let enough = rest > 0.0;
+    let clusters = Clusters::new(problem, &free, &step, bands.clone());
+    let nu = degrees_of_freedom.max(1.0);
+    let pooled = clusters.pooled(problem, bands.clone().next().as_ref(), nu);
+    let own = clusters.own(&inverse, &root, &free, nu);
+    let known = !enough && problem.known_sd;
 
-    // A with the priors, parameters that have no error taken out
-    let mut singular = [false; PARAMETERS];
-    let (inverse, condition) = loop {
-        let mut matrix = normal;
-        for i in 0..PARAMETERS {
-            matrix[i][i] += prior[i];
-            if !free[i] || singular[i] {
-                for k in 0..PARAMETERS {
-                    matrix[i][k] = 0.0;
-                    matrix[k][i] = 0.0;
-                }
-                matrix[i][i] = 1.0;
-            }
-        }
-        let mut scale = [1.0; PARAMETERS];
-        let mut flat = None;
-        for i in 0..PARAMETERS {
-            if !(matrix[i][i] > 0.0 && matrix[i][i].is_finite()) {
-                flat = Some(i);
-            } else {
-                scale[i] = 1.0 / matrix[i][i].sqrt();
-            }
-        }
-        let scaled = rescaled(&matrix, &scale);
-        match (flat, invert_spd(&scaled)) {
-            (None, Some(inverse)) => break (rescaled(&inverse, &scale), condition(&scaled, &inverse)),
-            (flat, _) => {
-                // the lobe's parameters go first, roughness before index: the order of what a leaf without gloss hides
-                let next = flat.or_else(|| [1, 0, 3, 2, 5, 4].into_iter().find(|&i| free[i] && !singular[i]));
-                match next {
-                    Some(i) if !singular[i] => singular[i] = true,
-                    _ => break ([[0.0; PARAMETERS]; PARAMETERS], f64::INFINITY),
-                }
-            }
-        }
-    };
-    let sandwich = |meat: &[[f64; PARAMETERS]; PARAMETERS]| -> [[f64; PARAMETERS]; PARAMETERS] {
-        let mut with_prior = *meat;
-        for i in 0..PARAMETERS {
-            // a prior is one more measurement, of variance sd²
-            with_prior[i][i] += prior[i] * problem.prior_variance;
-        }
-        product(&product(&inverse, &with_prior), &inverse)
-    };
-    let (of_pool, of_own) = (sandwich(&pooled), sandwich(&own));
-    let mut covariance = of_pool;
+    let mut with_prior = if known { normal } else { pooled };
+    for i in 0..PARAMETERS {
+        // a prior is one more measurement, of variance sd²
+        with_prior[i][i] += prior[i] * problem.prior_variance;
+    }
+    let mut covariance = product(&product(&inverse, &with_prior), &inverse);
     // the larger error of the two, the pooled correlations
-    let growth: [f64; PARAMETERS] =
-        core::array::from_fn(
-            |i| {
-                if of_pool[i][i] > 0.0 { (of_own[i][i] / of_pool[i][i]).max(1.0).sqrt() } else { 1.0 }
-            },
-        );
+    let growth: Vector = core::array::from_fn(|i| {
+        let alike = form(&pooled, &inverse[i]);
+        let grown = covariance[i][i] + own[i] - alike;
+        if !known && own[i] > alike && covariance[i][i] > 0.0 { (grown / covariance[i][i]).sqrt() } else { 1.0 }
+    });
     let mut standard_errors = [None; PARAMETERS];
     let mut knowledge = [Knowledge::Identified; PARAMETERS];
     for i in 0..PARAMETERS {
@@ -313,13 +193,13 @@ pub(super) fn estimate<'a>(problem: &Problem<'_>, bands: impl Iterator<Item = Ba
             }
         }
     }
-    let white = plain / (values_used - bands.count() as f64 - parameters).max(1.0);
-    let trace = |m: &[[f64; PARAMETERS]; PARAMETERS]| -> f64 {
+    let white = clusters.squares / (seen.values - bands.count() as f64 - parameters).max(1.0);
+    let trace = |m: &Matrix| -> f64 {
         // in units of each parameter's own information, so that no unit decides
         (0..PARAMETERS).filter(|&i| free[i] && normal[i][i] > 0.0).map(|i| m[i][i] / normal[i][i]).sum()
     };
-    let inflation = trace(&pooled) / (white * trace(&normal));
-    let per_direction = values_used / seen_directions.max(1.0);
+    let inflation = trace(if known { &normal } else { &pooled }) / (white * trace(&normal));
+    let per_direction = seen.values / seen.directions().max(1.0);
     let effective_bands = if inflation.is_finite() && inflation > 0.0 {
         (per_direction / inflation).clamp(1.0, per_direction)
     } else {
@@ -328,28 +208,41 @@ pub(super) fn estimate<'a>(problem: &Problem<'_>, bands: impl Iterator<Item = Ba
     Errors { standard_errors, covariance, knowledge, prior_share, condition, effective_bands, degrees_of_freedom }
 }
 
-fn rescaled(m: &[[f64; PARAMETERS]; PARAMETERS], scale: &[f64; PARAMETERS]) -> [[f64; PARAMETERS]; PARAMETERS] {
-    core::array::from_fn(|i| core::array::from_fn(|k| m[i][k] * scale[i] * scale[k]))
-}
-
-fn product(
-    a: &[[f64; PARAMETERS]; PARAMETERS],
-    b: &[[f64; PARAMETERS]; PARAMETERS],
-) -> [[f64; PARAMETERS]; PARAMETERS] {
-    core::array::from_fn(|i| core::array::from_fn(|k| (0..PARAMETERS).map(|m| a[i][m] * b[m][k]).sum()))
-}
-
-/// λ_max/λ_min of a positive definite matrix of unit diagonal, by power iteration on it and on its inverse.
-fn condition(m: &[[f64; PARAMETERS]; PARAMETERS], inverse: &[[f64; PARAMETERS]; PARAMETERS]) -> f64 {
-    let largest = |m: &[[f64; PARAMETERS]; PARAMETERS]| {
-        let mut x: [f64; PARAMETERS] = core::array::from_fn(|i| 1.0 + 0.1 * i as f64);
-        let mut length = 1.0;
-        for _ in 0..100 {
-            let y: [f64; PARAMETERS] = core::array::from_fn(|i| (0..PARAMETERS).map(|k| m[i][k] * x[k]).sum());
-            length = y.iter().map(|y| y * y).sum::<f64>().sqrt();
-            x = y.map(|y| y / length);
+/// (A + priors)⁻¹ of the free parameters and its condition number; parameters that have no error are taken out, and told.
+fn invert(normal: &Matrix, prior: &Vector, free: &[bool; PARAMETERS]) -> (Matrix, f64, [bool; PARAMETERS]) {
+    let mut singular = [false; PARAMETERS];
+    loop {
+        let mut matrix = *normal;
+        for i in 0..PARAMETERS {
+            matrix[i][i] += prior[i];
+            if !free[i] || singular[i] {
+                for k in 0..PARAMETERS {
+                    matrix[i][k] = 0.0;
+                    matrix[k][i] = 0.0;
+                }
+                matrix[i][i] = 1.0;
+            }
         }
-        length
-    };
-    largest(m) * largest(inverse)
+        let mut scale = [1.0; PARAMETERS];
+        let mut flat = None;
+        for i in 0..PARAMETERS {
+            if !(matrix[i][i] > 0.0 && matrix[i][i].is_finite()) {
+                flat = Some(i);
+            } else {
+                scale[i] = 1.0 / matrix[i][i].sqrt();
+            }
+        }
+        let scaled = rescaled(&matrix, &scale);
+        match (flat, invert_spd(&scaled)) {
+            (None, Some(inverse)) => return (rescaled(&inverse, &scale), condition(&scaled, &inverse), singular),
+            (flat, _) => {
+                // the lobe's parameters go first, roughness before index: the order of what a leaf without gloss hides
+                let next = flat.or_else(|| [1, 0, 3, 2, 5, 4].into_iter().find(|&i| free[i] && !singular[i]));
+                match next {
+                    Some(i) if !singular[i] => singular[i] = true,
+                    _ => return (ZERO, f64::INFINITY, singular),
+                }
+            }
+        }
+    }
 }
