@@ -7,6 +7,8 @@ use std::{env, fs};
 
 use leafbrdf_core::Portable;
 
+#[path = "src/both.rs"]
+mod both;
 #[allow(dead_code, missing_docs)]
 #[path = "src/interface.rs"]
 mod interface;
@@ -20,6 +22,7 @@ const BANDS: usize = 2101;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-changed=src/both.rs");
     println!("cargo::rerun-if-changed=src/interface.rs");
     let mut code = String::new();
     for (name, file, header) in [

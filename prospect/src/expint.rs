@@ -2,6 +2,8 @@
 
 use leafbrdf_core::Real;
 
+use crate::both::{numbers, single};
+
 /// Exponential integral E₁(x) = ∫ₓ^∞ e⁻ᵗ/t dt.
 ///
 /// - `x`: > 0. Zero gives +∞, a negative number or NaN gives NaN.
@@ -19,10 +21,10 @@ use leafbrdf_core::Real;
 /// ```
 pub fn e1<T: Real>(x: T) -> T {
     if x < T::ONE {
-        return horner(&E1_THIN, x + x - T::ONE) - x.ln();
+        return horner(&E1_THIN, const { &single(E1_THIN) }, x + x - T::ONE) - x.ln();
     }
     let inverse = T::ONE / (x + T::TWO);
-    (-x).exp() * inverse * horner(&E1_THICK, T::lit(6.0) * inverse - T::ONE)
+    (-x).exp() * inverse * horner(&E1_THICK, const { &single(E1_THICK) }, T::lit(6.0) * inverse - T::ONE)
 }
 
 /// What one passage through an elementary layer leaves of isotropic light.
@@ -72,7 +74,7 @@ pub(crate) fn transmission_either<T: Real>(k: T, k_ln_k: T) -> Transmission<T> {
 /// τ for K < 2: 1 − τ = K (K ln K + polynomial).
 #[inline(always)]
 pub(crate) fn transmission_thin<T: Real>(k: T, k_ln_k: T) -> Transmission<T> {
-    let absorbed = k * (k_ln_k + horner(&ABSORBED_THIN, k - T::ONE));
+    let absorbed = k * (k_ln_k + horner(&ABSORBED_THIN, const { &single(ABSORBED_THIN) }, k - T::ONE));
     Transmission { tau: T::ONE - absorbed, absorbed }
 }
 
@@ -102,7 +104,7 @@ pub(crate) fn log_slope<T: Real>(k: T, k_ln_k: T, tau_inverse: T) -> T {
 /// −2 E₂(K)/τ for K < 2, E₂ = K ln K + polynomial.
 #[inline(always)]
 pub(crate) fn log_slope_thin<T: Real>(k: T, k_ln_k: T, tau_inverse: T) -> T {
-    let e2 = k_ln_k + horner(&E2_THIN, k - T::ONE);
+    let e2 = k_ln_k + horner(&E2_THIN, const { &single(E2_THIN) }, k - T::ONE);
     -(e2 + e2) * tau_inverse
 }
 
@@ -116,7 +118,7 @@ pub(crate) fn log_slope_thick<T: Real>(k: T) -> T {
 #[inline(always)]
 fn scaled_e3<T: Real>(k: T) -> T {
     let inverse = T::ONE / (k + T::lit(3.5));
-    inverse * horner(&E3_THICK, T::lit(11.0) * inverse - T::ONE)
+    inverse * horner(&E3_THICK, const { &single(E3_THICK) }, T::lit(11.0) * inverse - T::ONE)
 }
 
 /// K ln K, 0 at K = 0.
@@ -125,12 +127,12 @@ pub(crate) fn k_ln_k<T: Real>(k: T) -> T {
     k * k.max(T::lit(1e-37)).ln()
 }
 
-/// Polynomial with the highest power first.
+/// Polynomial with the highest power first, its coefficients in both precisions.
 #[inline(always)]
-fn horner<T: Real, const N: usize>(coefficients: &[f64; N], z: T) -> T {
+fn horner<T: Real, const N: usize>(double: &[f64; N], single: &[f32; N], z: T) -> T {
     let mut sum = T::ZERO;
-    for c in coefficients {
-        sum = sum * z + T::lit(*c);
+    for c in numbers::<T, N>(double, single) {
+        sum = sum * z + c;
     }
     sum
 }

@@ -2,6 +2,8 @@
 
 use leafbrdf_core::Real;
 
+use crate::both::{numbers, single};
+
 /// Average transmissivity of a plane interface for light arriving from air evenly within a cone, unitless.
 ///
 /// t_av = 1 − (1/sin²α) ∫₀^α F(θ; n) 2 sin θ cos θ dθ, with F the unpolarised Fresnel reflectance: Stern's definition,
@@ -52,8 +54,9 @@ pub(crate) fn t_av_within<T: Real>(sin_cone: T, cos_cone: T, n: T) -> T {
 
     let mut reflected = T::ZERO;
     let mut arriving = T::ZERO;
-    for (node, weight) in GAUSS_LEGENDRE_32 {
-        for side in [T::HALF - T::HALF * T::lit(node), T::HALF + T::HALF * T::lit(node)] {
+    let nodes = numbers::<T, 16>(&NODES, const { &single(NODES) });
+    for (node, weight) in nodes.zip(numbers::<T, 16>(&WEIGHTS, const { &single(WEIGHTS) })) {
+        for side in [T::HALF - T::HALF * node, T::HALF + T::HALF * node] {
             // from normal incidence towards the edge of the cone
             let e = e_normal * (T::TWO * width * side).exp();
             let e2 = e.squared();
@@ -62,7 +65,7 @@ pub(crate) fn t_av_within<T: Real>(sin_cone: T, cos_cone: T, n: T) -> T {
             let r_p = (m2_rest - e - e) / (m2_rest + T::TWO);
             let fresnel = T::HALF * (e2 + r_p.squared());
             // 2 cos θ d(cos θ) = m² sinh 2w dw, up to a constant factor
-            let arrives = T::lit(weight) * (T::ONE - e2) / e;
+            let arrives = weight * (T::ONE - e2) / e;
             reflected += arrives * fresnel;
             arriving += arrives;
         }
@@ -80,22 +83,42 @@ pub(crate) fn ln_1p<T: Real>(u: T) -> T {
     w.ln() + lost
 }
 
-/// Positive nodes and weights of 32-point Gauss–Legendre quadrature on [−1, 1] (roots of P₃₂ found in 40 digits).
-const GAUSS_LEGENDRE_32: [(f64, f64); 16] = [
-    (0.04830766568773832, 0.0965400885147278),
-    (0.1444719615827965, 0.09563872007927486),
-    (0.23928736225213706, 0.09384439908080457),
-    (0.33186860228212767, 0.09117387869576389),
-    (0.42135127613063533, 0.08765209300440381),
-    (0.5068999089322294, 0.08331192422694675),
-    (0.5877157572407623, 0.07819389578707031),
-    (0.6630442669302152, 0.0723457941088485),
-    (0.7321821187402897, 0.06582222277636185),
-    (0.7944837959679424, 0.058684093478535544),
-    (0.84936761373257, 0.050998059262376175),
-    (0.8963211557660521, 0.04283589802222668),
-    (0.9349060759377397, 0.03427386291302143),
-    (0.9647622555875064, 0.02539206530926206),
-    (0.9856115115452684, 0.01627439473090567),
-    (0.9972638618494816, 0.007018610009470096),
+/// Positive nodes of 32-point Gauss–Legendre quadrature on [−1, 1] (roots of P₃₂ found in 40 digits).
+const NODES: [f64; 16] = [
+    0.04830766568773832,
+    0.1444719615827965,
+    0.23928736225213706,
+    0.33186860228212767,
+    0.42135127613063533,
+    0.5068999089322294,
+    0.5877157572407623,
+    0.6630442669302152,
+    0.7321821187402897,
+    0.7944837959679424,
+    0.84936761373257,
+    0.8963211557660521,
+    0.9349060759377397,
+    0.9647622555875064,
+    0.9856115115452684,
+    0.9972638618494816,
+];
+
+/// Their weights.
+const WEIGHTS: [f64; 16] = [
+    0.0965400885147278,
+    0.09563872007927486,
+    0.09384439908080457,
+    0.09117387869576389,
+    0.08765209300440381,
+    0.08331192422694675,
+    0.07819389578707031,
+    0.0723457941088485,
+    0.06582222277636185,
+    0.058684093478535544,
+    0.050998059262376175,
+    0.04283589802222668,
+    0.03427386291302143,
+    0.02539206530926206,
+    0.01627439473090567,
+    0.007018610009470096,
 ];

@@ -5,6 +5,7 @@
 extern crate std;
 
 mod absorption;
+mod both;
 mod coupling;
 mod error;
 pub mod expint;

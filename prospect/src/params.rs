@@ -2,6 +2,7 @@
 
 use leafbrdf_core::Real;
 
+use crate::both::pick;
 use crate::error::Error;
 
 /// The published versions of the model, which share the plate equations and differ in their coefficient tables.
@@ -145,6 +146,7 @@ struct Facts {
     unit: &'static str,
     typical: (f64, f64),
     limits: (f64, f64),
+    limits_single: (f32, f32),
     other_units: &'static [(&'static str, f64)],
 }
 
@@ -156,7 +158,8 @@ impl Facts {
         limits: (f64, f64),
         other_units: &'static [(&'static str, f64)],
     ) -> Facts {
-        Facts { name, unit, typical, limits, other_units }
+        let limits_single = (limits.0 as f32, limits.1 as f32);
+        Facts { name, unit, typical, limits, limits_single, other_units }
     }
 }
 
@@ -254,9 +257,10 @@ impl<T: Real> LeafParams<T> {
     pub fn check(&self, version: Version) -> Result<(), Error> {
         for parameter in Parameter::ALL {
             let value = self.get(parameter);
-            let (lowest, highest) = parameter.limits();
             // compared as `T`, so that 0.2 is the limit in single precision too
-            if !(value >= T::lit(lowest) && value <= T::lit(highest)) {
+            let (double, single) = (parameter.facts().limits, parameter.facts().limits_single);
+            let (lowest, highest) = (pick(double.0, single.0), pick(double.1, single.1));
+            if !(value >= lowest && value <= highest) {
                 return Err(Error::Outside { parameter, value: value.to_f64() });
             }
             let known = parameter == Parameter::NStruct || version.constituents().contains(&parameter);

@@ -10,6 +10,7 @@
 
 use leafbrdf_core::Real;
 
+use crate::both::{numbers, single};
 use crate::interface::ln_1p;
 use crate::plate::{Plate, PlateSlope};
 
@@ -295,8 +296,8 @@ fn exp_and_m1<T: Real>(x: T) -> (T, T) {
     // Taylor to degree 11 where eˣ − 1 would cancel; both are computed, so that a loop over bands vectorises.
     let near = x.max(T::lit(-0.125));
     let mut sum = T::ZERO;
-    for coefficient in EXP_M1 {
-        sum = sum * near + T::lit(coefficient);
+    for coefficient in numbers::<T, 11>(&EXP_M1, const { &single(EXP_M1) }) {
+        sum = sum * near + coefficient;
     }
     let exp = x.exp();
     let far = exp - T::ONE;
