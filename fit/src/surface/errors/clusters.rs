@@ -7,9 +7,13 @@ use super::super::model::{DirectionValue, PARAMETERS};
 use super::matrix::{Matrix, Root, Vector, ZERO, dot, eigen, form, product, transposed};
 use super::{Band, Problem, leverage};
 
-/// ∂residual/∂parameter of one value with the sign turned, k_L following: J_λv.
-fn slope(value: &DirectionValue<f64>, band: &Band<'_>, taken: &Vector) -> Vector {
-    core::array::from_fn(|i| value.d_specular[i] + band.k_lambert * value.d_diffuse[i] - taken[i] * value.diffuse)
+/// ∂model/∂parameter of one value, k_L following: J_λv of the parameters listed, 0 elsewhere.
+fn slope(value: &DirectionValue<f64>, band: &Band<'_>, taken: &Vector, listed: &[usize]) -> Vector {
+    let mut j = [0.0; PARAMETERS];
+    for &i in listed {
+        j[i] = value.d_specular[i] + band.k_lambert * value.d_diffuse[i] - taken[i] * value.diffuse;
+    }
+    j
 }
 
 /// The lower triangle of Σ x xᵀ · `weight`, over the parameters listed.
@@ -58,7 +62,7 @@ impl Seen {
             let taken = leverage(values, &band);
             let lines = values.iter().zip(band.weight).zip(band.residual).zip(&mut seen.in_direction);
             for (((value, w), r), in_direction) in lines.filter(|(((_, w), _), _)| **w > 0.0) {
-                let j = slope(value, &band, &taken);
+                let j = slope(value, &band, &taken, &listed);
                 *in_direction = true;
                 seen.values += 1.0;
                 add_outer(&mut seen.normal, &listed, &j, *w);
@@ -128,7 +132,7 @@ impl Clusters {
             let taken = leverage(values, &band);
             let s2: f64 = values.iter().zip(band.weight).map(|(value, w)| w * value.diffuse * value.diffuse).sum();
             for (v, (value, j)) in values.iter().zip(&mut slopes).enumerate() {
-                *j = slope(value, &band, &taken);
+                *j = slope(value, &band, &taken, &listed);
                 rest[v] = band.residual[v] - listed.iter().map(|&i| j[i] * step[i]).sum::<f64>();
             }
             for (v, cluster) in clusters.iter_mut().enumerate() {
