@@ -77,7 +77,7 @@ impl SurfaceOutcome {
             "parameters": parameters,
             "correlations": correlations,
             "errors": {
-                "method": "sandwich over directions, residuals correlated in any way over the bands",
+                "method": "sandwich over directions, each with noise of its own size, residuals correlated in any way over the bands",
                 "degrees_of_freedom": finite(errors.degrees_of_freedom),
                 "effective_bands": finite(errors.effective_bands),
                 "condition_number": finite(errors.condition),
