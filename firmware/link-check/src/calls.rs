@@ -7,8 +7,17 @@ use leafbrdf_core::{
     Grade, Illumination, Index, Leaf, Normalization, P1, Portable, Real, Surface, Tilt,
 };
 use leafbrdf_fit::band::scan::{GridSize, Scan, ScanTable};
-use leafbrdf_fit::{Band, BandOptions, BandSolver, Directions};
-use leafbrdf_prospect::{LeafParams, Prospect, Version, table};
+use leafbrdf_fit::hemispherical::{
+    self, Free, HemisphericalError, HemisphericalOptions, HemisphericalProblem, Measured, Spectra, n_prior,
+    workspace_len,
+};
+use leafbrdf_fit::{Band, BandOptions, BandSolver, Directions, Interval};
+use leafbrdf_prospect::{Lanes, LeafParams, Parameter, Prospect, Version, table};
+
+/// 400–1000 nm at 10 nm.
+const BANDS: usize = 61;
+static SINGLE: table::TableD<f32, BANDS> = table::TableD::<f32, BANDS>::cut::<400, 10>();
+static DOUBLE: table::TableD<f64, BANDS> = table::TableD::<f64, BANDS>::cut::<400, 10>();
 
 /// Takes a result: its name and the bits of its value as an `f64` (exact for `f32` results).
 pub type Print<'a> = dyn FnMut(&str, u64) + 'a;
@@ -18,6 +27,9 @@ pub fn single(print: &mut Print<'_>) {
     all::<f32>(print);
     all::<Portable<f32>>(print);
     inversion::<f32>(print);
+    if hemispherical(print, SINGLE.view()).is_err() {
+        print("error", 2);
+    }
 }
 
 /// Everything in double precision, in software on this core.
@@ -27,6 +39,9 @@ pub fn double(print: &mut Print<'_>) {
     inversion::<f64>(print);
     if prospect(print).is_err() {
         print("error", 1);
+    }
+    if hemispherical(print, DOUBLE.view()).is_err() {
+        print("error", 2);
     }
 }
 
@@ -193,6 +208,45 @@ fn prospect(print: &mut Print<'_>) -> Result<(), leafbrdf_prospect::Error> {
     let optics = Prospect::new(table::full(Version::D)).band(&leaf, black_box(400))?;
     print("reflectance", optics.reflectance.to_bits());
     print("transmittance", optics.transmittance.to_bits());
+    Ok(())
+}
+
+/// N and C_ab back from the spectra that they make, N from the plateau, in memory of the caller's.
+fn hemispherical<T: Lanes>(print: &mut Print<'_>, view: table::View<'_, T>) -> Result<(), HemisphericalError> {
+    let model = Prospect::new(view);
+    let leaf = LeafParams {
+        cab: input(42.0),
+        car: input(9.0),
+        cw: input(0.01),
+        cm: input(0.007),
+        ..LeafParams::with_n_struct(input(1.6))
+    };
+    let (mut reflectance, mut transmittance) = ([T::ZERO; BANDS], [T::ZERO; BANDS]);
+    model.spectrum(&leaf, &mut reflectance, &mut transmittance)?;
+    let weights = [input::<T>(2.0); BANDS];
+    let problem = HemisphericalProblem {
+        model,
+        spectra: Spectra {
+            reflectance: Some(Measured { values: &reflectance, weights: Some(&weights) }),
+            transmittance: Some(Measured { values: &transmittance, weights: None }),
+        },
+        held: leaf,
+    };
+    let free = [Parameter::NStruct, Parameter::Cab].map(Free::new);
+    // away from the leaf, so that there is something to search for
+    let start = LeafParams { cab: input(15.0), ..LeafParams::with_n_struct(input(2.5)) };
+    let options = HemisphericalOptions { max_iterations: 12, ..HemisphericalOptions::default() };
+    let mut workspace = [T::ZERO; workspace_len(2)];
+    let fit = hemispherical::fit(&problem, &free, &[start], &options, &mut workspace)?;
+    let mut show = |name: &str, value: T| print(name, value.to_f64().to_bits());
+    show("n_struct", fit.leaf.n_struct);
+    show("cab", fit.leaf.cab);
+    show("n_effective", fit.n_effective);
+    show("rmse", fit.rmse());
+    for error in fit.standard_errors {
+        show("standard_error", error.unwrap_or(T::ZERO));
+    }
+    show("n_prior", n_prior(&model, &reflectance, Interval::new(T::ONE, input(5.0)))?.n_struct);
     Ok(())
 }
 

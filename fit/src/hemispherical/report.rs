@@ -199,12 +199,18 @@ impl<T: Lanes, const P: usize> HemisphericalFit<T, P> {
                 _ => Identifiability::NotIdentifiable,
             };
         }
-        let correlations = core::array::from_fn(|i| {
-            core::array::from_fn(|j| match (standard_errors[i], standard_errors[j]) {
-                (Some(_), Some(_)) => Some(covariance[i][j]? / (covariance[i][i]? * covariance[j][j]?).sqrt()),
-                _ => None,
-            })
-        });
+        // loops rather than `from_fn`, in whose closures checks of the bounds stay
+        let mut correlations = [[None; P]; P];
+        for i in 0..P {
+            for j in 0..P {
+                let variances = (covariance[i][j], covariance[i][i], covariance[j][j]);
+                if let (Some(_), Some(_), (Some(both), Some(one), Some(other))) =
+                    (standard_errors[i], standard_errors[j], variances)
+                {
+                    correlations[i][j] = Some(both / (one * other).sqrt());
+                }
+            }
+        }
         let parameters = free.map(|free| free.parameter);
         let [reflectance, transmittance] = found.residuals;
         HemisphericalFit {

@@ -163,7 +163,10 @@ struct Search<T, const P: usize> {
 
 impl<T: Lanes, const P: usize> Search<T, P> {
     fn begin(&mut self, misfit: &mut Misfit<'_, '_, T, P>, start: &LeafParams<T>, options: &HemisphericalOptions<T>) {
-        let x = core::array::from_fn(|i| misfit.axes[i].place(start.get(misfit.parameters[i])));
+        let mut x = [T::ZERO; P];
+        for ((x, axis), parameter) in x.iter_mut().zip(&misfit.axes).zip(&misfit.parameters) {
+            *x = axis.place(start.get(*parameter));
+        }
         let solver = SolverOptions {
             tolerance: options.tolerance,
             max_iterations: options.max_iterations,
