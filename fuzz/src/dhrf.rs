@@ -5,7 +5,7 @@ use std::cell::Cell;
 
 use leafbrdf_core::{Absorbing, Angle, Dielectric, Grade, Illumination, Index, Real};
 
-use crate::{Input, Mirror};
+use crate::{Counting, Input};
 
 /// All grades, both precisions, real and complex index.
 pub fn dhrf(data: &[u8]) {
@@ -54,23 +54,5 @@ fn laws<T: Real, I: Index<T>>(illumination: &Illumination<T>, index: I, sigma: T
         if grade == Grade::E4d {
             assert!(calls.get() <= 180, "E4d: {} evaluations", calls.get());
         }
-    }
-}
-
-/// F ≡ 1, counting how often it is asked for.
-#[derive(Clone, Copy)]
-struct Counting<'a> {
-    calls: &'a Cell<usize>,
-}
-
-impl<T: Real> Index<T> for Counting<'_> {
-    fn fresnel(self, cos_theta_a: T) -> T {
-        self.calls.set(self.calls.get() + 1);
-        Mirror.fresnel(cos_theta_a)
-    }
-
-    fn fresnel_with_slope(self, cos_theta_a: T) -> (T, T) {
-        self.calls.set(self.calls.get() + 1);
-        Mirror.fresnel_with_slope(cos_theta_a)
     }
 }

@@ -6,7 +6,7 @@ use leafbrdf_core::{
     Absorbing, Angle, Diffuse, DirectionVectors, Geometry, Grade, Illumination, Index, Leaf, P1, Real, Surface, Tilt,
 };
 
-use crate::{Input, Mirror};
+use crate::{Counting, Input};
 
 /// Double and single precision, level and tilted, and the hemispherical integral.
 pub fn extended(data: &[u8]) {
@@ -110,23 +110,5 @@ fn hemisphere<T: Real, I: Index<T>>(source: &Illumination<T>, index: I, sigma: T
         assert!(value.to_f64() <= mirror.to_f64() * roundings, "{grade:?}: {value:?} above the mirror's {mirror:?}");
         assert_eq!(calls.get(), source.evaluations_ggx(sigma, grade), "{grade:?}");
         assert!(grade != Grade::E4d || calls.get() <= 400, "E4d: {} evaluations", calls.get());
-    }
-}
-
-/// F ≡ 1, counting how often it is asked for.
-#[derive(Clone, Copy)]
-struct Counting<'a> {
-    calls: &'a Cell<usize>,
-}
-
-impl<T: Real> Index<T> for Counting<'_> {
-    fn fresnel(self, cos_theta_a: T) -> T {
-        self.calls.set(self.calls.get() + 1);
-        Mirror.fresnel(cos_theta_a)
-    }
-
-    fn fresnel_with_slope(self, cos_theta_a: T) -> (T, T) {
-        self.calls.set(self.calls.get() + 1);
-        Mirror.fresnel_with_slope(cos_theta_a)
     }
 }

@@ -11,16 +11,20 @@ mod gradient;
 mod input;
 mod mirror;
 mod readers;
+mod spectra;
 mod surface;
+mod whole;
 
 pub use bands::bands;
 pub use dhrf::dhrf;
 pub use extended::extended;
 pub use gradient::gradient;
 pub use input::Input;
-pub(crate) use mirror::Mirror;
+pub(crate) use mirror::{Counting, Mirror};
 pub use readers::readers;
+pub use spectra::spectra;
 pub use surface::{surface_complex, surface_f32, surface_f64};
+pub use whole::{leaf_fit, surface_fit};
 
 /// A function that panics where its laws are broken on the bytes given.
 pub type Target = fn(&[u8]);
@@ -35,4 +39,7 @@ pub const TARGETS: &[(&str, Target)] = &[
     ("extended", extended),
     ("bands", bands),
     ("readers", readers),
+    ("spectra", spectra),
+    ("surface_fit", surface_fit),
+    ("leaf_fit", leaf_fit),
 ];

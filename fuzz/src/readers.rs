@@ -2,7 +2,7 @@
 //! is written of it.
 
 use leafbrdf::measurement::{
-    Azimuth, Layout, Measurement, Quantity, ReadOptions, WriteError, WriteOptions, read_bytes, render,
+    Azimuth, Layout, Measurement, Quantity, ReadError, ReadOptions, WriteError, WriteOptions, read_bytes, render,
 };
 
 use crate::Input;
@@ -23,12 +23,7 @@ fn check(bytes: &[u8], options: &ReadOptions) {
     let name = "leaf.csv";
     let leaves = match read_bytes(name, bytes, options) {
         Ok(leaves) => leaves,
-        Err(error) => {
-            let message = error.to_string();
-            assert!(message.starts_with(name), "does not name the file: {message}");
-            assert!(!error.message.is_empty() && !message.contains('\n'), "not one sentence: {message:?}");
-            return;
-        }
+        Err(error) => return one_sentence(name, &error),
     };
     assert!(!leaves.is_empty(), "a file without a leaf was accepted");
     for leaf in &leaves {
@@ -39,6 +34,13 @@ fn check(bytes: &[u8], options: &ReadOptions) {
             round_trip(&leaves, WriteOptions { layout: Some(layout), quantity: None, azimuth });
         }
     }
+}
+
+/// A refusal names the file and is one sentence.
+pub(crate) fn one_sentence(name: &str, error: &ReadError) {
+    let message = error.to_string();
+    assert!(message.starts_with(name), "does not name the file: {message}");
+    assert!(!error.message.is_empty() && !message.contains('\n'), "not one sentence: {message:?}");
 }
 
 /// What every accepted measurement satisfies.
