@@ -122,6 +122,27 @@ pub trait Real:
         if self > other { self } else { other }
     }
 
+    /// (√x, √y).
+    #[doc(hidden)]
+    #[inline(always)]
+    fn sqrt_of_both(x: Self, y: Self) -> (Self, Self) {
+        (x.sqrt(), y.sqrt())
+    }
+
+    /// The unit of [`decay`](Self::decay)'s argument: 1, or log₂e where a number's own exponential is one of base 2.
+    #[doc(hidden)]
+    const DECAY_UNIT: f64 = 1.0;
+    /// By how much [`decay`](Self::decay) is too large.
+    #[doc(hidden)]
+    const DECAY_GAIN: f64 = 1.0;
+
+    /// `DECAY_GAIN` · e^(−x/`DECAY_UNIT`) for x ≥ 0: constants that the caller has folded into others already.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn decay(self) -> Self {
+        (-self).exp()
+    }
+
     /// `lower` ≤ x ≤ `upper` for two constants, neither negative; false for NaN.
     #[inline(always)]
     fn is_within(self, lower: f64, upper: f64) -> bool {

@@ -30,12 +30,47 @@ use super::{Real, fixed, root, single};
 /// assert!((laurel.brdf(&mirror).0 - 1.25).abs() < 0.01);
 /// # Ok::<(), leafbrdf_core::DomainError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Default)]
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(not(all(target_arch = "arm", not(target_abi = "eabihf"))), derive(PartialEq, PartialOrd))]
 #[repr(transparent)]
 pub struct F32(
     /// The number itself.
     pub f32,
 );
+
+#[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+impl PartialEq for F32 {
+    #[inline(always)]
+    fn eq(&self, other: &Self) -> bool {
+        soft::compare(self.0, other.0) == 0
+    }
+}
+#[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+impl PartialOrd for F32 {
+    #[inline(always)]
+    fn partial_cmp(&self, other: &Self) -> Option<core::cmp::Ordering> {
+        match soft::compare(self.0, other.0) {
+            2 => None,
+            order => Some(order.cmp(&0)),
+        }
+    }
+    #[inline(always)]
+    fn lt(&self, other: &Self) -> bool {
+        soft::compare(self.0, other.0) < 0
+    }
+    #[inline(always)]
+    fn gt(&self, other: &Self) -> bool {
+        soft::compare(self.0, other.0) == 1
+    }
+    #[inline(always)]
+    fn le(&self, other: &Self) -> bool {
+        soft::compare(self.0, other.0) <= 0
+    }
+    #[inline(always)]
+    fn ge(&self, other: &Self) -> bool {
+        soft::compare(other.0, self.0) <= 0
+    }
+}
 
 impl Add for F32 {
     type Output = Self;
@@ -83,7 +118,14 @@ impl Div for F32 {
     type Output = Self;
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        F32(self.0 / other.0)
+        #[cfg(not(all(target_arch = "arm", not(target_abi = "eabihf"))))]
+        {
+            F32(self.0 / other.0)
+        }
+        #[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+        {
+            F32(soft::div(self.0, other.0))
+        }
     }
 }
 impl Neg for F32 {
@@ -131,7 +173,15 @@ impl Real for F32 {
     }
     #[inline(always)]
     fn to_usize(self) -> usize {
-        self.0 as usize
+        #[cfg(not(all(target_arch = "arm", not(target_abi = "eabihf"))))]
+        {
+            self.0 as usize
+        }
+        #[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+        {
+            // what is negative, and NaN, lies above infinity
+            if self.0.to_bits() > f32::INFINITY.to_bits() { 0 } else { fixed::truncated(self.0, 0) as usize }
+        }
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -141,9 +191,20 @@ impl Real for F32 {
     fn exp(self) -> Self {
         F32(fixed::exp(self.0))
     }
+    const DECAY_UNIT: f64 = core::f64::consts::LOG2_E;
+    const DECAY_GAIN: f64 = fixed::DECAY_GAIN;
+    #[inline(always)]
+    fn decay(self) -> Self {
+        F32(fixed::decay(self.0))
+    }
+    #[inline(always)]
+    fn sqrt_of_both(x: Self, y: Self) -> (Self, Self) {
+        let (x, y) = root::sqrt_of_both(x.0, y.0);
+        (F32(x), F32(y))
+    }
     #[inline]
     fn ln(self) -> Self {
-        F32(single::ln(self.0))
+        single::ln(self)
     }
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
@@ -157,7 +218,7 @@ impl Real for F32 {
     }
     #[inline]
     fn asin(self) -> Self {
-        F32(single::asin(self.0))
+        single::asin(self)
     }
     #[inline(always)]
     fn abs(self) -> Self {
@@ -166,8 +227,13 @@ impl Real for F32 {
     /// One comparison of integers: positive numbers have the order of their bits, and NaN and what is negative lie above them all.
     #[inline(always)]
     fn is_within(self, lower: f64, upper: f64) -> bool {
-        let (least, most) = ((lower as f32).to_bits(), (upper as f32).to_bits());
-        // −0 is 0
-        self.0.to_bits().wrapping_sub(least) <= most.wrapping_sub(least) || (least == 0 && self.0.to_bits() == 1 << 31)
+        let (lower, upper) = (lower as f32, upper as f32);
+        let bits = self.0.to_bits();
+        let (least, span) = (lower.to_bits(), upper.to_bits() - lower.to_bits());
+        if least == 0 {
+            // −0 is 0
+            return bits <= span || bits == 1 << 31;
+        }
+        bits.wrapping_sub(least) <= span
     }
 }

@@ -15,61 +15,125 @@ pub(crate) fn mul_high(a: u32, b: u32) -> u32 {
     #[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
     {
         let (a1, a0, b1, b0) = (a >> 16, a & 0xFFFF, b >> 16, b & 0xFFFF);
-        let middle = a1 * b0 + ((a0 * b0) >> 16);
+        let middle = super::root::unseen(a1 * b0 + ((a0 * b0) >> 16));
         let other = a0 * b1 + (middle & 0xFFFF);
         a1 * b1 + (middle >> 16) + (other >> 16)
     }
 }
 
-/// `value` · 2^`exponent`, rounded to the nearest `f32`, ties to even; the result must be a normal number or 0.
+/// `value` · 2^`exponent`, rounded to the nearest `f32`, ties to even; 2^`exponent` and the result must be normal numbers.
 #[inline(always)]
 pub(crate) fn scaled(value: u32, exponent: i32) -> f32 {
     let rounded = value as f32;
-    let bits = rounded.to_bits().wrapping_add((exponent << 23) as u32);
-    if value == 0 { 0.0 } else { f32::from_bits(bits) }
+    #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
+    {
+        // exact
+        rounded * f32::from_bits(((127 + exponent) << 23) as u32)
+    }
+    #[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
+    {
+        let bits = rounded.to_bits().wrapping_add((exponent << 23) as u32);
+        if value == 0 { 0.0 } else { f32::from_bits(bits) }
+    }
 }
 
 /// (`value` · 2^`exponent`)², rounded once: `value` is moved up first, so that a small one keeps its digits.
 #[inline(always)]
 pub(crate) fn square(value: u32, exponent: i32) -> f32 {
-    let zeros = value.leading_zeros();
-    let leading = value.unbounded_shl(zeros);
+    // 0 stays 0
+    let zeros = (value | 1).leading_zeros();
+    let leading = value << zeros;
     scaled(mul_high(leading, leading), 2 * (exponent - zeros as i32) + 32)
 }
 
-/// eˣ. Below 2⁻¹²⁶, the smallest normal number: 0; above 2¹²⁶: infinite.
+/// x · 2^`bits` for x ≥ 0, cut off: 0 below one unit, `u32::MAX` where it does not fit.
 #[inline(always)]
+pub(crate) fn truncated(x: f32, bits: u32) -> u32 {
+    #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
+    {
+        // exact, and one instruction
+        (x * f32::from_bits((127 + bits) << 23)) as u32
+    }
+    #[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
+    {
+        truncated_in_integers(x, bits)
+    }
+}
+
+#[cfg(any(test, not(all(target_arch = "arm", target_abi = "eabihf"))))]
+#[inline(always)]
+fn truncated_in_integers(x: f32, bits: u32) -> u32 {
+    let mantissa = (x.to_bits() << 8) | 0x8000_0000;
+    let shift = (158 - bits).wrapping_sub((x.to_bits() >> 23) & 0xFF);
+    if shift as i32 >= 0 { mantissa.unbounded_shr(shift) } else { u32::MAX }
+}
+
+/// High word of the 64-bit product of two signed numbers.
+#[inline(always)]
+fn signed_mul_high(a: i32, b: i32) -> i32 {
+    #[cfg(not(all(target_arch = "arm", not(target_abi = "eabihf"))))]
+    {
+        ((i64::from(a) * i64::from(b)) >> 32) as i32
+    }
+    // as `mul_high`: the upper halves carry the signs
+    #[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+    {
+        let (a1, a0, b1, b0) = (a >> 16, a & 0xFFFF, b >> 16, b & 0xFFFF);
+        let middle = super::root::unseen(((a1 * b0) as u32).wrapping_add(((a0 as u32) * (b0 as u32)) >> 16)) as i32;
+        let other = a0 * b1 + (middle & 0xFFFF);
+        a1 * b1 + (middle >> 16) + (other >> 16)
+    }
+}
+
+/// 2^(f/2³²), Q30, and half a unit of the 24th bit: ready to be cut off.
+#[cfg_attr(all(target_arch = "arm", not(target_abi = "eabihf")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_abi = "eabihf"))), inline(always))]
+fn power(f: u32) -> u32 {
+    // 2^((i + 1/2)/16), Q30, and that half unit
+    const MIDDLES: [i32; 16] = [
+        0x4166_C38B,
+        0x444C_077F,
+        0x4752_1D04,
+        0x4A7A_7813,
+        0x4DC6_9D1B,
+        0x5138_21C0,
+        0x54D0_AD99,
+        0x5891_FAFF,
+        0x5C7D_D7E2,
+        0x6096_26A3,
+        0x64DC_DF01,
+        0x6954_0F07,
+        0x6DFD_DC0A,
+        0x72DC_83B2,
+        0x77F2_5D0C,
+        0x7D41_D9AB,
+    ];
+    // 2^(w/16) − 1 = w (A₁ + w (A₂ + w A₃)) for −1/2 ≤ w < 1/2, Q32: 1.2e-9
+    const A: [i32; 3] = [0x0B17_2180, 0x003D_801A, 0xE35A];
+    let w = ((f << 4) ^ 0x8000_0000) as i32;
+    let slope = A[0].wrapping_add(signed_mul_high(w, A[1].wrapping_add(signed_mul_high(w, A[2]))));
+    // the index has four bits
+    let middle = MIDDLES[(f >> 28) as usize];
+    middle.wrapping_add(signed_mul_high(signed_mul_high(w, slope), middle)) as u32
+}
+
+/// eˣ. Below 2⁻¹²⁶, the smallest normal number: 0; above 2¹²⁶: infinite.
+#[cfg_attr(all(target_arch = "arm", not(target_abi = "eabihf")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_abi = "eabihf"))), inline(always))]
 pub(crate) fn exp(x: f32) -> f32 {
     const LOG2_E: u32 = 0xB8AA_3B29; // Q31
-    // 2^(i/16), Q30
-    const POWERS: [u32; 16] = [
-        0x4000_0000,
-        0x42D5_61B4,
-        0x45CA_E0F2,
-        0x48E1_E9BA,
-        0x4C1B_F829,
-        0x4F7A_9931,
-        0x52FF_6B55,
-        0x56AC_1F75,
-        0x5A82_799A,
-        0x5E84_51D0,
-        0x62B3_9509,
-        0x6712_460B,
-        0x6BA2_7E66,
-        0x7066_6F76,
-        0x7560_6374,
-        0x7A92_BE8B,
-    ];
-    // 2^(w/16) − 1 = w (A₁ + w (A₂ + w A₃)) on [0, 1), Q36: 1.4e-9
-    const A: [u32; 3] = [0xB172_1F54, 0x03D7_CB27, 0x000E_821F];
     /// ln 2¹²⁶
     const FAR: u32 = 0x42AE_AC50;
 
     let bits = x.to_bits();
     let sign = ((bits as i32) >> 31) as u32;
-    if bits & 0x7FFF_FFFF >= FAR {
-        // infinite, or NaN where x is
-        return if x < 0.0 { 0.0 } else { x + f32::INFINITY };
+    let magnitude = bits & 0x7FFF_FFFF;
+    if magnitude >= FAR {
+        return match (magnitude > f32::INFINITY.to_bits(), sign) {
+            (true, _) => x,
+            (false, 0) => f32::INFINITY,
+            (false, _) => 0.0,
+        };
     }
     // |x| log₂e, Q24 (a subnormal number becomes 0 by the shift)
     let mantissa = (bits << 8) | 0x8000_0000;
@@ -79,20 +143,22 @@ pub(crate) fn exp(x: f32) -> f32 {
     // of 2⁻³² short of it
     let k = ((y >> 24) ^ sign) as i32;
     let f = ((y << 8) | 0x80) ^ sign;
-    let w = f << 4;
-    let series = mul_high(w, A[0] + mul_high(w, A[1] + mul_high(w, A[2])));
-    // the index has four bits
-    let power = POWERS[(f >> 28) as usize];
-    let result = power + (mul_high(power, series) >> 4);
-    // to 24 bits; a carry raises the exponent, as it should
-    f32::from_bits((((k + 126) as u32) << 23) + ((result + 0x40) >> 7))
+    // a carry raises the exponent, as it should
+    f32::from_bits((((k + 126) as u32) << 23) + (power(f) >> 7))
 }
 
-/// Sine and cosine, Q31, of r in units of the quarter turn, Q32, 0 ≤ r ≤ 1/2.
-#[inline]
-fn sin_cos_of_quarter(r: u32) -> (u32, u32) {
-    let z = mul_high(r, r);
-    (mul_high(r, sine_over_angle(z)), cosine(z))
+/// What [`decay`] gives is larger by this: so that it never leaves the normal numbers.
+pub(crate) const DECAY_GAIN: f64 = 4.0;
+
+/// 4 · 2⁻ˣ for x ≥ 0, and 0 from x = 127 on: within a unit in the last place.
+#[inline(always)]
+pub(crate) fn decay(x: f32) -> f32 {
+    // −x = k + f/2³², f ≥ 0, k = whole − 128; 2⁻²⁵ short of it, which is half a unit of the result at most
+    let complement = !truncated(x, 25);
+    let whole = complement >> 25;
+    // the bit before the point is 2²³: it makes the exponent one larger
+    let bits = (whole << 23).wrapping_add(power(complement << 7) >> 7);
+    f32::from_bits(if whole == 0 { 0 } else { bits })
 }
 
 /// sin(π r/2)/r by z = r², Q32 → Q31: 3e-9.
@@ -109,38 +175,47 @@ fn cosine(z: u32) -> u32 {
     C[0] - mul_high(z, C[1] - mul_high(z, C[2] - mul_high(z, C[3] - mul_high(z, C[4]))))
 }
 
-/// Sine and cosine, Q31, of a zenith angle in degrees, 0 ≤ θ < 90: 1e-9 absolute.
-#[inline(always)]
-pub(crate) fn zenith_sin_cos(degrees: f32) -> (u32, u32) {
-    let (mantissa, exponent) = per_ninety(degrees);
-    // θ/90, Q32; exponent ≤ 133: below 128°
-    let theta = if exponent == 133 { mantissa << 1 } else { mantissa.unbounded_shr(132_u32.wrapping_sub(exponent)) };
-    // beyond 45°: that of the complement, exactly
-    let beyond = theta > 1 << 31;
-    let (sin, cos) = sin_cos_of_quarter(if beyond { theta.wrapping_neg() } else { theta });
-    if beyond { (cos, sin) } else { (sin, cos) }
+/// 90° as [`sine`] takes it.
+const QUARTER: u32 = 90 << 25;
+
+/// The sines and cosines of a pair of directions, Q30: 1e-9.
+pub(crate) struct Sines {
+    pub sin_theta_s: u32,
+    pub cos_theta_s: u32,
+    pub sin_theta_v: u32,
+    pub cos_theta_v: u32,
+    /// |cos(φ_v/2)|
+    pub cos_half_phi: u32,
 }
 
-/// |cos(φ/2)|, Q31, for φ in degrees, |φ| ≤ 360: 1e-9 absolute.
+/// Angles in degrees, 0 ≤ θ < 90 and |φ| ≤ 360.
 #[inline(always)]
-pub(crate) fn cos_of_half_azimuth(degrees: f32) -> u32 {
-    const QUARTER: u32 = 1 << 31;
-    let (mantissa, exponent) = per_ninety(degrees);
-    // |φ|/180, Q31; exponent ≤ 135: below 512°
-    let half = if exponent == 135 { mantissa << 1 } else { mantissa.unbounded_shr(134_u32.wrapping_sub(exponent)) };
-    // cos² is even about 90°
-    let half = if half > QUARTER { half.wrapping_neg() } else { half };
-    let beyond = half > QUARTER / 2;
-    let (sin, cos) = sin_cos_of_quarter(if beyond { QUARTER - half } else { half } << 1);
-    if beyond { sin } else { cos }
+pub(crate) fn direction(theta_s: f32, theta_v: f32, phi_v: f32) -> Sines {
+    // degrees in units of 2⁻²⁵, so that a complement is exact
+    let (s, v) = (truncated(theta_s, 25), truncated(theta_v, 25));
+    // |φ|/2, Q24; cos is even about 180°, and what is left of 90° has all the digits near the mirror direction
+    let half = truncated(f32::from_bits(phi_v.to_bits() & 0x7FFF_FFFF), 23);
+    Sines {
+        sin_theta_s: sine(s),
+        cos_theta_s: sine(QUARTER - s),
+        sin_theta_v: sine(v),
+        cos_theta_v: sine(QUARTER - v),
+        cos_half_phi: sine(half.abs_diff(QUARTER / 2) << 1),
+    }
 }
 
-/// |x|/90 as an integer and the biased exponent of x: |x|/90 = integer · 2^(exponent − 164).
-#[inline(always)]
-fn per_ninety(x: f32) -> (u32, u32) {
-    const PER_NINETY: u32 = 0xB60B_60B6; // 2³⁸/90
-    let bits = x.to_bits();
-    (mul_high((bits << 8) | 0x8000_0000, PER_NINETY), (bits >> 23) & 0xFF)
+/// The sine, Q30, of an angle from 0° to 90°, in degrees Q25.
+#[cfg_attr(all(target_arch = "arm", target_abi = "eabihf"), inline(always))]
+#[cfg_attr(not(all(target_arch = "arm", target_abi = "eabihf")), inline(never))]
+fn sine(r: u32) -> u32 {
+    // sin(128° r)/r by z = r², r ≤ 90/128, Q30: 4e-11
+    let z = mul_high(r, r) as i32;
+    let sum = 0x003E_8224_i32.wrapping_add(signed_mul_high(-0x0002_B529, z));
+    let sum = (-0x0386_CCF4_i32).wrapping_add(signed_mul_high(sum, z));
+    let sum = 0x1DAD_945E_i32.wrapping_add(signed_mul_high(sum, z));
+    let sum = (-0x76EE_0830_i32).wrapping_add(signed_mul_high(sum, z));
+    let sum = 0x8EFA_3513_u32.wrapping_add(signed_mul_high(sum, z) as u32);
+    mul_high(r, sum)
 }
 
 /// Sine and cosine of an angle in radians; NaN for what is not finite.
@@ -172,7 +247,7 @@ pub(crate) fn sin_cos(x: f32) -> (f32, f32) {
         2 => (-sin, -cos),
         _ => (-cos, sin),
     };
-    (if x < 0.0 { -sin } else { sin }, cos)
+    (if x.to_bits() >> 31 == 1 { -sin } else { sin }, cos)
 }
 
 /// |x| · 2/π modulo 4, Q62, from the bits of |x| ≥ 2⁻¹²: as many digits of 2/π as x shifts out (Payne and Hanek 1983).
@@ -192,4 +267,38 @@ fn quarter_turns(bits: u32) -> u64 {
     };
     let product = |i: u32| u64::from(mantissa) * u64::from(word(i));
     (product(0) << 32).wrapping_add(product(1)).wrapping_add(product(2) >> 32)
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    /// A device with a floating-point unit converts by it: the same numbers, saturation included.
+    #[test]
+    fn what_is_cut_off_in_integers_is_what_the_conversion_of_the_hardware_gives() {
+        for bits in (0..0x7F80_0000_u32).step_by(4999) {
+            let x = f32::from_bits(bits);
+            for places in [0, 23, 25] {
+                let scale = (1_u32 << places) as f32;
+                assert_eq!(super::truncated_in_integers(x, places), (x * scale) as u32, "{x:e} {places}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_decay_is_within_one_unit_in_the_last_place_and_ends_in_0() {
+        let mut worst = 0.0_f64;
+        for i in 0..2_000_000_u32 {
+            let x = i as f32 * (126.9 / 2e6);
+            let exact = super::DECAY_GAIN * (-f64::from(x)).exp2();
+            let unit = exact.log2().floor().exp2() * 2.0_f64.powi(-23);
+            worst = worst.max((f64::from(super::decay(x)) - exact).abs() / unit);
+        }
+        std::println!("decay: {worst:.3} units");
+        assert!(worst <= 1.0, "{worst}");
+        assert_eq!(super::decay(0.0), 4.0);
+        for far in [127.1, 128.0, 1e6, f32::INFINITY] {
+            assert_eq!(super::decay(far), 0.0, "{far}");
+        }
+    }
 }

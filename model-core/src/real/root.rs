@@ -16,27 +16,74 @@ pub(crate) fn sqrt(x: f32) -> f32 {
     }
 }
 
-/// VSQRT. `core` offers no square root, and the one of the `libm` crate costs 48 instructions instead of 7.
+/// The same number, by a way that the compiler cannot see through: of products of halves it would make one of 64 bits, which
+/// a Cortex-M0 has only as a call that costs twice as much.
+#[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+#[allow(unsafe_code)]
+#[inline(always)]
+pub(crate) fn unseen(x: u32) -> u32 {
+    let same: u32;
+    // SAFETY: no instruction at all
+    unsafe { core::arch::asm!("/* {0} */", inlateout(reg) x => same, options(pure, nomem, nostack, preserves_flags)) };
+    same
+}
+
+/// (√x, √y), in fewer moves than one by one.
+#[inline(always)]
+pub(crate) fn sqrt_of_both(x: f32, y: f32) -> (f32, f32) {
+    #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
+    {
+        both_by_instruction(x, y)
+    }
+    #[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
+    {
+        (in_integers(x), in_integers(y))
+    }
+}
+
+/// VSQRT. `core` offers no square root, and the one of the `libm` crate costs 48 instructions instead of 5. Stable assembly may
+/// clobber a register of this unit, but not take one as operand: hence the moves.
 #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
-#[allow(unsafe_code)] // the one place: an instruction that stable Rust reaches by assembly only
+#[allow(unsafe_code)] // with the next one the only place: an instruction that stable Rust reaches by assembly only
 #[inline(always)]
 fn by_instruction(x: f32) -> f32 {
     let result: u32;
-    // SAFETY: no memory and no stack; s0, which may not be declared as clobbered on stable, is put back. The ABI of this
-    // target (eabihf) says that the unit is there.
+    // SAFETY: no memory, no stack, no flags; what is written is declared. The ABI of this target (eabihf) says that the unit is
+    // there.
     unsafe {
         core::arch::asm!(
-            "vmov {saved}, s0",
             "vmov s0, {x}",
             "vsqrt.f32 s0, s0",
             "vmov {x}, s0",
-            "vmov s0, {saved}",
             x = inlateout(reg) x.to_bits() => result,
-            saved = out(reg) _,
+            out("s0") _,
             options(pure, nomem, nostack, preserves_flags),
         );
     }
     f32::from_bits(result)
+}
+
+/// VSQRT twice.
+#[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
+#[allow(unsafe_code)]
+#[inline(always)]
+fn both_by_instruction(x: f32, y: f32) -> (f32, f32) {
+    let (root_x, root_y): (u32, u32);
+    // SAFETY: as above
+    unsafe {
+        core::arch::asm!(
+            "vmov s0, s1, {x}, {y}",
+            "vsqrt.f32 s0, s0",
+            "vsqrt.f32 s1, s1",
+            "vmov {x}, {y}, s0, s1",
+            x = inlateout(reg) x.to_bits() => root_x,
+            y = inlateout(reg) y.to_bits() => root_y,
+            out("s0") _,
+            out("s1") _,
+            options(pure, nomem, nostack, preserves_flags),
+        );
+    }
+    (f32::from_bits(root_x), f32::from_bits(root_y))
 }
 
 /// The root in integers: 1/√x by Newton's method from a table of 96 bytes, the last bit by the remainder.
