@@ -2,7 +2,7 @@
 
 use core::mem::MaybeUninit;
 
-use leafbrdf_core::{DirectionTerms, DomainError};
+use leafbrdf_core::{Degrees, DirectionTerms, Refused};
 
 use crate::number::{Number, float, number};
 use crate::status::{LB_ERR_NULL, lb_status};
@@ -22,7 +22,7 @@ pub struct lb_direction {
 
 impl lb_direction {
     #[inline(always)]
-    fn new(terms: Result<DirectionTerms<Number>, DomainError>) -> Result<Self, lb_status> {
+    fn new(terms: Result<DirectionTerms<Number>, Refused>) -> Result<Self, lb_status> {
         let terms = terms.map_err(surface::direction)?;
         Ok(lb_direction {
             cos_theta_a: float(terms.cos_theta_a),
@@ -44,10 +44,9 @@ pub extern "C" fn lb_direction_from_degrees(
     direction: Option<&mut MaybeUninit<lb_direction>>,
 ) -> lb_status {
     let Some(out) = direction else { return LB_ERR_NULL };
-    let [theta_s, theta_v, phi_v] = [theta_s_deg, theta_v_deg, phi_v_deg].map(number);
-    let value = || {
-        lb_direction::new(DirectionTerms::at_degrees(theta_s, theta_v, phi_v, surface::normalization(normalization)?))
-    };
+    let directions = Degrees::new(number(theta_s_deg), number(theta_v_deg), number(phi_v_deg));
+    let value =
+        || lb_direction::new(DirectionTerms::try_at_degrees(directions, surface::normalization(normalization)?));
     give(out, value())
 }
 
@@ -59,7 +58,8 @@ pub extern "C" fn lb_direction_from_cosines(
     direction: Option<&mut MaybeUninit<lb_direction>>,
 ) -> lb_status {
     let (Some(at), Some(out)) = (at, direction) else { return LB_ERR_NULL };
-    let value = || lb_direction::new(DirectionTerms::at_cosines(&at.numbers(), surface::normalization(normalization)?));
+    let value =
+        || lb_direction::new(DirectionTerms::try_at_cosines(&at.numbers(), surface::normalization(normalization)?));
     give(out, value())
 }
 
@@ -73,14 +73,14 @@ pub extern "C" fn lb_brdf_at(
 ) -> lb_status {
     let (Some(leaf), Some(at), Some(out)) = (leaf, at, brdf) else { return LB_ERR_NULL };
     let value = || {
-        let diffuse = leaf.diffuse()?;
+        leaf.check_k_lambert()?;
         let surface = leaf.surface()?;
         let terms = DirectionTerms {
             cos_theta_a: number(at.cos_theta_a),
             tan2_alpha: number(at.tan2_alpha),
             weight: number(at.lobe_weight),
         };
-        Ok(float(diffuse + terms.brdf(surface.index(), surface.sigma())))
+        Ok(float(leaf.diffuse() + terms.brdf(surface.index(), surface.sigma())))
     };
     give(out, value())
 }

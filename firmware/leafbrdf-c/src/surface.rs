@@ -2,7 +2,10 @@
 
 use core::mem::MaybeUninit;
 
-use leafbrdf_core::{Dielectric, DirectionCosines, DomainError, Geometry, Index, Leaf, Normalization, Real, Surface};
+use leafbrdf_core::{
+    Beckmann, Degrees, Dielectric, DirectionCosines, DomainError, Geometry, Index, Leaf, Normalization, Real, Refused,
+    Surface, VCavity,
+};
 
 use crate::number::{Number, float, number};
 use crate::status::{
@@ -60,24 +63,23 @@ pub struct lb_gradient {
 }
 
 impl lb_leaf {
-    /// k_L/pi, the diffuse part.
+    /// k_lambert is inside its domain.
     #[inline(always)]
-    pub(crate) fn diffuse(&self) -> Result<Number, lb_status> {
-        // the bits of numbers from 0 on are in the numbers' order, NaN and negative ones above: one comparison without an FPU
-        let bits = self.k_lambert.to_bits();
-        if bits > 1.0_f32.to_bits() && self.k_lambert != 0.0 {
-            return Err(LB_ERR_K_LAMBERT);
-        }
-        Ok(number(self.k_lambert) * Number::lit(core::f64::consts::FRAC_1_PI))
+    pub(crate) fn check_k_lambert(&self) -> Result<(), lb_status> {
+        if number(self.k_lambert).is_within(0.0, 1.0) { Ok(()) } else { Err(LB_ERR_K_LAMBERT) }
+    }
+
+    /// k_L/pi, the diffuse part: computed last, so that nothing keeps it meanwhile.
+    #[inline(always)]
+    pub(crate) fn diffuse(&self) -> Number {
+        number(self.k_lambert) * Number::lit(core::f64::consts::FRAC_1_PI)
     }
 
     /// n, sigma and normalization; k_lambert is not looked at.
     #[inline(always)]
     pub(crate) fn surface(&self) -> Result<Surface<Number>, lb_status> {
-        let n = number(self.n);
-        // named apart: the constructor's error could be either
-        Dielectric::new(n).map_err(|_| LB_ERR_N)?;
-        let surface = Surface::new(n, number(self.sigma)).map_err(|_| LB_ERR_SIGMA)?;
+        let index = Dielectric::new(number(self.n)).map_err(|_| LB_ERR_N)?;
+        let surface = Surface::with_parts(index, number(self.sigma), Beckmann, VCavity).map_err(|_| LB_ERR_SIGMA)?;
         Ok(surface.with_normalization(normalization(self.normalization)?))
     }
 }
@@ -107,7 +109,17 @@ impl lb_cosines {
 
 /// Which angle the model refused.
 #[inline(always)]
-pub(crate) fn direction(error: DomainError) -> lb_status {
+pub(crate) fn direction(refused: Refused) -> lb_status {
+    match refused {
+        Refused::ThetaS => LB_ERR_THETA_S,
+        Refused::ThetaV => LB_ERR_THETA_V,
+        Refused::PhiV => LB_ERR_PHI_V,
+    }
+}
+
+/// The same by the name in an error.
+#[inline(always)]
+fn named(error: DomainError) -> lb_status {
     match error.parameter.as_bytes() {
         [b't', .., b's'] => LB_ERR_THETA_S,
         [b't', .., b'v'] => LB_ERR_THETA_V,
@@ -155,9 +167,9 @@ pub extern "C" fn lb_brdf(
 ) -> lb_status {
     let (Some(leaf), Some(at), Some(out)) = (leaf, at, brdf) else { return LB_ERR_NULL };
     let value = || {
-        let diffuse = leaf.diffuse()?;
-        let specular = leaf.surface()?.brdf_at_cosines(&at.numbers()).map_err(direction)?;
-        Ok(float(diffuse + specular))
+        leaf.check_k_lambert()?;
+        let specular = leaf.surface()?.try_brdf_at_cosines(&at.numbers()).map_err(direction)?;
+        Ok(float(leaf.diffuse() + specular))
     };
     give(out, value())
 }
@@ -172,7 +184,7 @@ pub extern "C" fn lb_brdf_gradient(
     let (Some(leaf), Some(at), Some(out)) = (leaf, at, gradient) else { return LB_ERR_NULL };
     let value = || {
         let leaf = Leaf::new(number(leaf.k_lambert), leaf.surface()?).map_err(|_| LB_ERR_K_LAMBERT)?;
-        let geometry = Geometry::from_cosines(at.numbers()).map_err(direction)?;
+        let geometry = Geometry::from_cosines(at.numbers()).map_err(named)?;
         let gradient = leaf.brdf_with_gradient(&geometry);
         Ok(lb_gradient {
             value: float(gradient.value),
@@ -201,11 +213,11 @@ pub extern "C" fn lb_brdf_from_degrees(
     brdf: Option<&mut MaybeUninit<f32>>,
 ) -> lb_status {
     let (Some(leaf), Some(out)) = (leaf, brdf) else { return LB_ERR_NULL };
+    let directions = Degrees::new(number(theta_s_deg), number(theta_v_deg), number(phi_v_deg));
     let value = || {
-        let diffuse = leaf.diffuse()?;
-        let [theta_s, theta_v, phi_v] = [theta_s_deg, theta_v_deg, phi_v_deg].map(number);
-        let specular = leaf.surface()?.brdf_at_degrees(theta_s, theta_v, phi_v).map_err(direction)?;
-        Ok(float(diffuse + specular))
+        leaf.check_k_lambert()?;
+        let specular = leaf.surface()?.try_brdf_at_degrees(directions).map_err(direction)?;
+        Ok(float(leaf.diffuse() + specular))
     };
     give(out, value())
 }
