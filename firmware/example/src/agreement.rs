@@ -223,12 +223,12 @@ fn inversion(random: &mut Random, block: u32, print: &mut Print<'_>) {
     if let Ok(Some(fit)) = device::fit_band(directions, band, &BandOptions::table_3(), &mut workspace) {
         hash.values(Ok(fit.parameters));
         hash.values(Ok(fit.standard_errors.map(|error| error.unwrap_or(F32(f32::NAN)))));
-        hash.value(Ok(fit.rmse()));
+        hash.value(Ok(fit.rmse));
         hash.word(fit.n_obs as u32);
         let [k_at, n_at, sigma_at] = fit.at_bound.map(|at| at as u32);
         hash.word(k_at | n_at << 2 | sigma_at << 4);
         hash.word(fit.iterations);
-        hash.word(u32::from(fit.termination.converged()));
+        hash.word(u32::from(fit.converged));
     }
     print("fit", block, hash.0);
 }

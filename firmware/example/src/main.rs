@@ -19,8 +19,8 @@ use example::text::{print, print_decimal, print_whole};
 use leafbrdf_c::{LB_BOUSQUET_2005, LB_OK, lb_brdf, lb_cab, lb_cosines, lb_fit_cab, lb_interior, lb_leaf};
 use leafbrdf_core::real::device::F32;
 use leafbrdf_core::{Angle, DirectionTerms, DomainError, Grade, Illumination, Normalization, Real, Surface};
-use leafbrdf_fit::device::{Workspace, fit_band};
-use leafbrdf_fit::{Band, BandFit, BandOptions, Directions, FitError};
+use leafbrdf_fit::device::{Fit, Workspace, fit_band};
+use leafbrdf_fit::{Band, BandOptions, Directions, FitError};
 
 /// The instrument's directions, prepared once; a product would keep them as constants in flash.
 struct Head {
@@ -59,7 +59,7 @@ impl Head {
 }
 
 /// One band. The report goes straight to the caller's memory: every copy on the way would cost a hundred bytes of stack.
-fn invert(head: &Head, brdf: &[F32], workspace: &mut Workspace<F32>) -> Result<Option<BandFit<F32>>, FitError> {
+fn invert(head: &Head, brdf: &[F32], workspace: &mut Workspace<F32>) -> Result<Option<Fit<F32>>, FitError> {
     static EVERY_VALUE_ONCE: [F32; DIRECTIONS] = [F32(1.0); DIRECTIONS];
     let band = Band { brdf, weight: &EVERY_VALUE_ONCE };
     fit_band(head.directions(), band, &BandOptions::table_3(), workspace)
@@ -89,7 +89,7 @@ fn instrument() -> Result<(), DomainError> {
         let dhrf = k_lambert + Surface::new(n, sigma)?.dhrf(&source, Grade::E4d);
         print_whole(*nm as u64);
         print("  ");
-        row(&[k_lambert.0, k_lambert_se, n.0, n_se, sigma.0, sigma_se, fit.rmse().0, dhrf.0]);
+        row(&[k_lambert.0, k_lambert_se, n.0, n_se, sigma.0, sigma_se, fit.rmse.0, dhrf.0]);
         mean_n += n;
         mean_sigma += sigma;
     }

@@ -21,12 +21,13 @@
 /**
  * Floats in an lb_workspace.
  */
-#define LB_WORKSPACE_FLOATS 140
+#define LB_WORKSPACE_FLOATS 182
 
 /**
- * The most steps of the search for one band, over its starts; a step is at most one pass over the directions.
+ * The most steps of the search for one band, 40 a start from 4 starts; a step is one pass over the directions, and one more
+ * pass comes before them all.
  */
-#define LB_BAND_MOST_STEPS 400
+#define LB_BAND_MOST_STEPS 160
 
 /**
  * Bit of lb_band.at_bound: k_lambert is at its lower bound and held there.
@@ -197,7 +198,7 @@ typedef struct lb_band {
    */
   uint32_t at_bound;
   /**
-   * Steps of the search, over all its starts.
+   * Steps of the search, over all its starts: passes over the directions.
    */
   uint32_t iterations;
   /**

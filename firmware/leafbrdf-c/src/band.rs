@@ -2,18 +2,19 @@
 
 use core::mem::MaybeUninit;
 
-use leafbrdf_fit::device::{self, Workspace};
-use leafbrdf_fit::{AtBound, Band, BandBounds, BandFit, BandOptions, Directions, FitError, Interval};
+use leafbrdf_fit::device::{self, Fit};
+use leafbrdf_fit::{AtBound, Band, BandBounds, BandOptions, Directions, FitError, Interval};
 
-use crate::border::{numbers, slice_mut, workspace as border_workspace};
+use crate::border::{numbers, slice, slice_mut, workspace as border_workspace};
 use crate::number::{Number, float, number};
 use crate::status::{LB_ERR_BOUNDS, LB_ERR_COUNT, LB_ERR_DATA, LB_ERR_NULL, LB_ERR_TOO_FEW, LB_OK, lb_status};
 
 /// Floats in an lb_workspace.
-pub const LB_WORKSPACE_FLOATS: usize = 140;
+pub const LB_WORKSPACE_FLOATS: usize = 182;
 
-/// The most steps of the search for one band, over its starts; a step is at most one pass over the directions.
-pub const LB_BAND_MOST_STEPS: u32 = 400;
+/// The most steps of the search for one band, 40 a start from 4 starts; a step is one pass over the directions, and one more
+/// pass comes before them all.
+pub const LB_BAND_MOST_STEPS: u32 = 160;
 
 /// Bit of lb_band.at_bound: k_lambert is at its lower bound and held there.
 pub const LB_AT_LOWER_K_LAMBERT: u32 = 1;
@@ -68,7 +69,7 @@ pub struct lb_band {
     pub n_obs: u32,
     /// Which parameters sit at a bound: LB_AT_... added up.
     pub at_bound: u32,
-    /// Steps of the search, over all its starts.
+    /// Steps of the search, over all its starts: passes over the directions.
     pub iterations: u32,
     /// 1 where the search arrived at a minimum, 0 where it ran out of steps.
     pub converged: u32,
@@ -76,10 +77,27 @@ pub struct lb_band {
     pub status: lb_status,
 }
 
+impl lb_bounds {
+    /// The paper's.
+    const TABLE_3: Self = lb_bounds {
+        k_lambert_lower: 0.01,
+        k_lambert_upper: 0.99,
+        n_lower: 1.1,
+        n_upper: 5.0,
+        sigma_lower: 0.01,
+        sigma_upper: 1.0,
+    };
+}
+
 impl lb_band {
-    fn new(fit: &BandFit<Number>) -> Self {
-        let [k_lambert, n, sigma] = fit.parameters.map(float);
-        let [k_lambert_se, n_se, sigma_se] = fit.standard_errors.map(|error| error.map_or(f32::NAN, float));
+    #[inline(always)]
+    fn new(fit: &Fit<Number>) -> Self {
+        let [k_lambert, n, sigma] = fit.parameters;
+        let (k_lambert, n, sigma) = (float(k_lambert), float(n), float(sigma));
+        // one by one: a loop would keep the report in memory
+        let error = |error: Option<Number>| error.map_or(f32::NAN, float);
+        let [k_lambert_se, n_se, sigma_se] = fit.standard_errors;
+        let (k_lambert_se, n_se, sigma_se) = (error(k_lambert_se), error(n_se), error(sigma_se));
         let [k_at, n_at, sigma_at] = fit.at_bound;
         let bits = |at, lower, upper| match at {
             AtBound::Free => 0,
@@ -93,13 +111,13 @@ impl lb_band {
             k_lambert_se,
             n_se,
             sigma_se,
-            rmse: float(fit.rmse()),
+            rmse: float(fit.rmse),
             n_obs: fit.n_obs as u32,
             at_bound: bits(k_at, LB_AT_LOWER_K_LAMBERT, LB_AT_UPPER_K_LAMBERT)
                 | bits(n_at, LB_AT_LOWER_N, LB_AT_UPPER_N)
                 | bits(sigma_at, LB_AT_LOWER_SIGMA, LB_AT_UPPER_SIGMA),
             iterations: fit.iterations,
-            converged: u32::from(fit.termination.converged()),
+            converged: u32::from(fit.converged),
             status: LB_OK,
         }
     }
@@ -194,7 +212,25 @@ pub unsafe extern "C" fn lb_fit_band(
                 border_workspace(workspace)?,
             )
         };
-        Ok(fit_band(shared, Band { brdf, weight }, bounds, workspace, out))
+        let bounds = bounds.unwrap_or(const { &lb_bounds::TABLE_3 });
+        let options = BandOptions {
+            bounds: BandBounds {
+                k_lambert: Interval::new(number(bounds.k_lambert_lower), number(bounds.k_lambert_upper)),
+                n: Interval::new(number(bounds.n_lower), number(bounds.n_upper)),
+                sigma: Interval::new(number(bounds.sigma_lower), number(bounds.sigma_upper)),
+            },
+            max_iterations: LB_BAND_MOST_STEPS / 4,
+            ..BandOptions::table_3()
+        };
+        match device::fit_band(shared, Band { brdf, weight }, &options, workspace) {
+            Ok(Some(fit)) => {
+                out.write(lb_band::new(&fit));
+                Ok(LB_OK)
+            }
+            Ok(None) => Err(LB_ERR_TOO_FEW),
+            Err(FitError::Bounds { .. }) => Err(LB_ERR_BOUNDS),
+            Err(_) => Err(LB_ERR_DATA),
+        }
     };
     fit().unwrap_or_else(|status| status)
 }
@@ -224,18 +260,16 @@ pub unsafe extern "C" fn lb_fit_bands(
     let fit = || {
         let Some(values) = count.checked_mul(band_count).filter(|values| *values > 0) else { return Err(LB_ERR_COUNT) };
         // SAFETY: the caller's promise about pointers and lengths
-        let (shared, brdf, weight, workspace, bands) = unsafe {
-            (
-                directions.numbers()?,
-                numbers(brdf, values)?,
-                numbers(weight, count)?,
-                border_workspace(workspace)?,
-                slice_mut(bands, band_count)?,
-            )
+        let (brdf, bands) = unsafe {
+            directions.numbers()?;
+            numbers(weight, count)?;
+            border_workspace(workspace)?;
+            (slice(brdf, values)?, slice_mut(bands, band_count)?)
         };
         let mut last = LB_OK;
         for (out, brdf) in bands.iter_mut().zip(brdf.chunks_exact(count.max(1) as usize)) {
-            let status = fit_band(shared, Band { brdf, weight }, bounds, workspace, out);
+            // SAFETY: the caller's promise; `brdf` are `count` values
+            let status = unsafe { lb_fit_band(Some(directions), brdf.as_ptr(), weight, bounds, workspace, Some(out)) };
             if status != LB_OK {
                 out.write(lb_band::without(status));
                 last = status;
@@ -244,34 +278,4 @@ pub unsafe extern "C" fn lb_fit_bands(
         Ok(last)
     };
     fit().unwrap_or_else(|status| status)
-}
-
-/// Writes to `out` where the status is `LB_OK`: in place, for a copy would cost stack.
-// one copy of the solver for both entry points
-#[inline(never)]
-fn fit_band(
-    directions: Directions<'_, Number>,
-    band: Band<'_, Number>,
-    bounds: Option<&lb_bounds>,
-    workspace: &mut Workspace<Number>,
-    out: &mut MaybeUninit<lb_band>,
-) -> lb_status {
-    let mut options = BandOptions::table_3();
-    if let Some(bounds) = bounds {
-        options.bounds = BandBounds {
-            k_lambert: Interval::new(number(bounds.k_lambert_lower), number(bounds.k_lambert_upper)),
-            n: Interval::new(number(bounds.n_lower), number(bounds.n_upper)),
-            sigma: Interval::new(number(bounds.sigma_lower), number(bounds.sigma_upper)),
-        };
-    }
-    // by reference: a move would copy the report
-    match &device::fit_band(directions, band, &options, workspace) {
-        Ok(Some(fit)) => {
-            out.write(lb_band::new(fit));
-            LB_OK
-        }
-        Ok(None) => LB_ERR_TOO_FEW,
-        Err(FitError::Bounds { .. }) => LB_ERR_BOUNDS,
-        Err(_) => LB_ERR_DATA,
-    }
 }
