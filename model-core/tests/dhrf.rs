@@ -3,6 +3,7 @@
 mod common;
 
 use common::Table;
+use leafbrdf_core::real::device::F32;
 use leafbrdf_core::{
     Absorbing, Angle, Dielectric, Geometry, Grade, Illumination, Index, Normalization, Portable, Real, Surface,
 };
@@ -340,6 +341,29 @@ fn portable_arithmetic_gives_the_same() {
         let error = relative(value.0, dhrf(n, sigma, theta_s, Grade::E10));
         assert!(error < 1e-14, "n={n} sigma={sigma} theta_s={theta_s}: {error:e}");
     }
+}
+
+/// Degrees in integers and degrees by way of radians: 2e-5 is the promise of E4d in single precision.
+#[test]
+fn a_device_prepares_the_same_illumination_from_degrees() {
+    for i in 0..5_000 {
+        let (theta_s, sigma, n) = scattered(i);
+        let source = Illumination::from_degrees(F32(theta_s)).unwrap();
+        let value = source.dhrf(Dielectric::new(F32(n)).unwrap(), F32(sigma), Grade::E4d);
+        let exact = dhrf(n.into(), sigma.into(), theta_s.into(), Grade::E10);
+        let error = relative(value.to_f64(), exact);
+        assert!(error < 2e-5, "n={n} sigma={sigma} theta_s={theta_s}: {error:e}");
+        // the kinks themselves: a rule of another grade on the two planes, whose counts rarely differ
+        let by_radians = Illumination::new(Angle::from_degrees(F32(theta_s))).unwrap();
+        let [one, other] =
+            [source, by_radians].map(|x| x.dhrf(Dielectric::new(F32(n)).unwrap(), F32(sigma), Grade::E6));
+        assert!((one.0 / other.0 - 1.0).abs() < 4e-6, "n={n} sigma={sigma} theta_s={theta_s}: {one:?} {other:?}");
+    }
+    for theta_s in [90.0, 90.1, 120.0, -1.0, 450.0, f32::NAN, f32::INFINITY] {
+        assert_eq!(Illumination::from_degrees(F32(theta_s)).unwrap_err().parameter, "theta_s", "{theta_s}");
+    }
+    assert!(Illumination::from_degrees(F32(-0.0)).is_ok());
+    assert!(Illumination::from_degrees(F32(89.999_99)).is_ok());
 }
 
 #[test]

@@ -92,4 +92,6 @@ print("#![allow(clippy::approx_constant)]")
 print()
 write("legendre", "1 on [−1, 1]", legendre_rules)
 print()
-write("hermite", "exp(−x²)", hermite_rules)
+# the walk multiplies every node by the Gaussian itself
+scaled_rules = [[(x, w * mp.exp(x * x)) for x, w in rule] for rule in hermite_rules]
+write("hermite", "exp(−x²), by which the weights are divided", scaled_rules)

@@ -129,7 +129,8 @@ pub(super) fn walk_with<T: Real>(
     visit: &mut impl FnMut(GgxNode<T>),
 ) {
     let (cos_s, sin_s, tan_s) = (plane.cos_theta_s, plane.sin_theta_s, plane.tan_theta_s);
-    let (near, far) = (-plane.horizon.0, plane.horizon.1);
+    let (x0, x1) = plane.horizon();
+    let (near, far) = (-x0, x1);
     let sigma2 = sigma.squared();
     let source = (cos_s.squared() + sigma2 * sin_s.squared()).sqrt();
     let frame = Frame { cos_s, sin_s, sigma2, sigma, source };

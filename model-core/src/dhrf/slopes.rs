@@ -16,6 +16,8 @@
 //!
 //! Both follow from solving for y; the cubic of the second factors by tan 3t = tan t tan(60° − t) tan(60° + t).
 
+use crate::real::device::F32;
+use crate::real::fixed;
 use crate::{Angle, DomainError, Real};
 
 /// Cosine, sine and the kinks in closed form. Every one is free of cancellation up to grazing incidence.
@@ -25,14 +27,33 @@ pub(super) struct SlopePlane<T> {
     pub(super) sin_theta_s: T,
     /// tan θ_s: the slope of w, and the end of the upper plateau.
     pub(super) tan_theta_s: T,
-    /// cot θ_s, where w = 2; very large at normal incidence.
-    pub(super) cot_theta_s: T,
-    /// x₀ < 0 and x₁ > 0: beyond them no view is above the horizon.
-    pub(super) horizon: (T, T),
-    /// −b₁ and b₂: the ends of the plateau W = w.
-    pub(super) plateau: (T, T),
-    /// tan(θ_s/3).
-    pub(super) tan_third: T,
+    /// Below the plateau; w ≤ 2; w ≥ 2, empty below 45°; beyond the plateau.
+    pub(super) segments: [Segment<T>; 4],
+}
+
+/// A stretch of x between two kinks; it starts where the one before ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Segment<T> {
+    pub(super) end: T,
+    /// Zeros A and B of y_k², or of y_h² where there is no plateau. They anchor the map x = A + (B − A) sin²θ, in which y_k
+    /// and y_h are nearly analytic, so that a Gauss rule converges exponentially.
+    pub(super) a: T,
+    pub(super) b: T,
+}
+
+impl<T: Real> Segment<T> {
+    #[inline(always)]
+    pub(super) fn span(&self) -> T {
+        self.b - self.a
+    }
+
+    /// tan(θ/4) of the map, a rational stand-in for the angle; x beyond an anchor is taken as the anchor.
+    #[inline(never)]
+    pub(super) fn place(&self, x: T) -> T {
+        let (low, high) = ((x - self.a).max(T::ZERO).sqrt(), (self.b - x).max(T::ZERO).sqrt());
+        let tan_half = low / (self.span().sqrt() + high);
+        tan_half / (T::ONE + (T::ONE + tan_half.squared()).sqrt())
+    }
 }
 
 impl<T: Real> SlopePlane<T> {
@@ -43,24 +64,44 @@ impl<T: Real> SlopePlane<T> {
         }
         // the complement keeps its digits where θ_s nears 90° (never 90° minus a rounded angle)
         let third_of_complement = theta_s.complement().radians() / T::lit(3.0);
-        let third = theta_s.radians() / T::lit(3.0);
-        let upper = (T::ONE + sin) / cos;
-        Ok(SlopePlane {
-            cos_theta_s: cos,
-            sin_theta_s: sin,
-            tan_theta_s: sin / cos,
-            // 10¹⁵ at normal incidence: beyond every slope, and its products stay finite in f32
-            cot_theta_s: (cos / sin).min(T::lit(1e15)),
-            horizon: (-cos / (T::ONE + sin), upper),
-            plateau: (-third_of_complement.tan(), (T::PI / T::lit(6.0) + third).tan()),
-            tan_third: third.tan(),
-        })
+        Ok(Self::from_sines(sin, cos, third_of_complement.tan()))
     }
 
-    /// Slopes smaller than this meet no kink.
+    /// From sin θ_s, cos θ_s and b₁ = tan((90° − θ_s)/3), each with its own digits near 90°.
+    #[inline]
+    fn from_sines(sin: T, cos: T, b1: T) -> Self {
+        let root3 = T::lit(1.732_050_807_568_877_3);
+        let tan = sin / cos;
+        // 10¹⁵ at normal incidence: beyond every slope, and its products stay finite in f32
+        let cot = (cos / sin).min(T::lit(1e15));
+        let (x0, x1) = (-cos / (T::ONE + sin), (T::ONE + sin) / cos);
+        // tan(60° − t) by tan t
+        let b2 = (root3 - b1) / (T::ONE + root3 * b1);
+        SlopePlane {
+            cos_theta_s: cos,
+            sin_theta_s: sin,
+            tan_theta_s: tan,
+            segments: [
+                Segment { end: -b1, a: x0, b: x1 },
+                Segment { end: b2.min(cot), a: -b1, b: b2 },
+                Segment { end: b2.max(tan), a: T::ZERO, b: tan },
+                Segment { end: x1, a: x0, b: x1 },
+            ],
+        }
+    }
+
+    /// x₀ < 0 and x₁ > 0: beyond them no view is above the horizon.
+    #[inline(always)]
+    pub(super) fn horizon(&self) -> (T, T) {
+        let [Segment { a, b, .. }, ..] = self.segments;
+        (a, b)
+    }
+
+    /// Slopes smaller than this, b₁ or cot θ_s, meet no kink.
     #[inline(always)]
     pub(super) fn smooth_radius(&self) -> T {
-        (-self.plateau.0).min(self.cot_theta_s)
+        let [below, low, ..] = &self.segments;
+        (-below.end).min(low.end)
     }
 
     /// w = 1 + x tan θ_s.
@@ -68,17 +109,20 @@ impl<T: Real> SlopePlane<T> {
     pub(super) fn w(&self, x: T) -> T {
         T::ONE + x * self.tan_theta_s
     }
+}
 
-    /// y_h², from x.
-    #[inline(always)]
-    pub(super) fn horizon2(&self, x: T) -> T {
-        (x - self.horizon.0) * (self.horizon.1 - x)
-    }
-
-    /// y_k² / ((x + b₁)(b₂ − x)) on the plateau w ≤ 2.
-    #[inline(always)]
-    pub(super) fn plateau_shape(&self, x: T) -> T {
-        // tan θ_s / tan(θ_s/3) = 1/(b₁ b₂), finite at normal incidence too
-        (T::ONE + x * self.tan_third) / (-self.plateau.0 * self.plateau.1 * (self.w(x) + T::TWO))
+impl SlopePlane<F32> {
+    /// [`new`](Self::new) for a device: sines from degrees in integers, 1e-9 absolute.
+    #[inline]
+    pub(super) fn from_degrees(theta_s: F32) -> Result<Self, DomainError> {
+        // to the last number below 90
+        if !theta_s.is_within(0.0, 89.999_992) {
+            return Err(DomainError::new("theta_s", "0° ≤ theta_s < 90°"));
+        }
+        // as if the third of the complement were a view's zenith angle
+        let sines = fixed::direction(theta_s.0, ((F32(90.0) - theta_s) / F32(3.0)).0, 0.0);
+        let number = |q30: u32| F32(fixed::scaled(q30, -30));
+        let b1 = number(sines.sin_theta_v) / number(sines.cos_theta_v);
+        Ok(Self::from_sines(number(sines.sin_theta_s), number(sines.cos_theta_s), b1))
     }
 }

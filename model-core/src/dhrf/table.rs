@@ -21,7 +21,7 @@ impl<const ENTRIES: usize> Legendre<ENTRIES> {
         Table { first: &first_words::<ENTRIES>(&nodes::LEGENDRE), second: &second_words::<ENTRIES>(&nodes::LEGENDRE) };
 }
 
-/// Gauss–Hermite rules, likewise.
+/// Gauss–Hermite rules, likewise; weights times exp(x²).
 pub(super) struct Hermite<const ENTRIES: usize>;
 
 impl<const ENTRIES: usize> Hermite<ENTRIES> {
@@ -58,22 +58,26 @@ impl Table {
     /// Nodes ≥ 0 of the rule of this order, the smallest first, with their weights; nothing if the table ends before.
     #[inline(always)]
     pub(super) fn half<T: Real>(self, order: usize) -> impl Iterator<Item = (T, T)> {
-        let range = order * order / 4..entries(order);
-        let first = self.first.get(range.clone()).unwrap_or(&[]);
-        let second = if needs_second_word::<T>() { self.second.get(range).unwrap_or(&[]) } else { first };
-        first
-            .iter()
-            .zip(second)
-            .map(|(&[node, weight], &[node_rest, weight_rest])| (number(node, node_rest), number(weight, weight_rest)))
+        let start = order * order / 4;
+        let first = self.first.get(start..).unwrap_or(&[]);
+        first.iter().take(order.div_ceil(2)).enumerate().map(move |(i, &[node, weight])| {
+            let rest = if needs_second_word::<T>() { self.second.get(start + i) } else { None };
+            let [node_rest, weight_rest] = rest.copied().unwrap_or([0.0; 2]);
+            (number(node, node_rest), number(weight, weight_rest))
+        })
     }
 
     /// All nodes of the rule of this order with their weights: x and −x in turn.
     #[inline(always)]
     pub(super) fn whole<T: Real>(self, order: usize, mut visit: impl FnMut(T, T)) {
-        for (node, weight) in self.half(order) {
-            visit(node, weight);
-            if node > T::ZERO {
-                visit(-node, weight);
+        for (mut node, weight) in self.half::<T>(order) {
+            // one call, so that what is visited is compiled once
+            loop {
+                visit(node, weight);
+                node = -node;
+                if node >= T::ZERO {
+                    break;
+                }
             }
         }
     }

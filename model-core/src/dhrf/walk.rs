@@ -1,6 +1,10 @@
 //! The walk over the nodes: columns x = const between the kinks, then along each column.
+//!
+//! One loop over segments, columns, the parts of a column and nodes, with one copy of each formula: on a device the code itself
+//! is a cost. What depends on the column alone is computed there; a node of E4d needs one division, one root and nine products
+//! for its weight, and its Fresnel factor.
 
-use super::grade::{Constants, Rule};
+use super::grade::{Foot, Rule};
 use super::slopes::SlopePlane;
 use crate::Real;
 
@@ -14,211 +18,194 @@ pub(super) struct Node<T> {
     pub(super) scaled_slope2: T,
 }
 
-/// One column: slopes of equal x.
-struct Column<T> {
-    x: T,
-    /// x/σ
-    u: T,
-    /// of the outer rule, 2/π exp(−u²) included
-    weight: T,
-    /// y_k, or 0 where there is no plateau
-    edge: T,
-    /// W on the plateau
-    height: T,
-    /// y_h
-    horizon: T,
-}
-
-/// A stretch of x between two kinks.
-struct Segment<T> {
-    from: T,
-    to: T,
-    /// Zeros of y_k² (or of y_h² where there is no plateau). They anchor the map x = A + (B − A) sin²θ, in which y_k and
-    /// y_h are nearly analytic, so that the rule converges exponentially.
-    anchors: (T, T),
-    plateau: Plateau,
-    /// Correction to the number of nodes.
-    offset: f64,
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Plateau {
-    None,
-    /// W = w
-    Low,
-    /// W = 2
-    High,
-}
-
 /// Visits every node. Their number depends on θ_s, σ and the grade only; no search, no estimate, no recursion.
 #[inline(always)]
 pub(super) fn walk<T: Real, R: Rule>(plane: &SlopePlane<T>, sigma: T, mut visit: impl FnMut(Node<T>)) {
     let c = R::CONSTANTS;
-    if T::lit(c.smooth) * sigma <= plane.smooth_radius() {
-        smooth::<T, R>(plane, sigma, &mut visit);
-        return;
-    }
-    let (x0, x1) = plane.horizon;
-    let (b1, b2) = plane.plateau;
-    let (tan, cot) = (plane.tan_theta_s, plane.cot_theta_s);
-    let segments = [
-        Segment { from: x0, to: b1, anchors: (x0, x1), plateau: Plateau::None, offset: c.ax0 },
-        Segment { from: b1, to: b2.min(cot), anchors: (b1, b2), plateau: Plateau::Low, offset: 0.0 },
-        // empty below 45°
-        Segment { from: cot, to: tan, anchors: (T::ZERO, tan), plateau: Plateau::High, offset: 0.0 },
-        Segment { from: b2.max(tan), to: x1, anchors: (x0, x1), plateau: Plateau::None, offset: c.ax2 },
-    ];
+    let inverse_sigma = T::ONE / sigma;
+    let inverse_sigma2 = inverse_sigma.squared();
     let reach = T::lit(c.lx) * sigma;
-    let excess = excess_roughness(sigma);
-    for segment in segments {
-        let from = segment.from.max(-reach);
-        let to = segment.to.min(reach);
-        if to <= from {
+    let more_columns = rough(c.rough_x, sigma);
+    let more_nodes = rough(c.rough_y, sigma);
+    // Where no kink lies within `smooth`·σ, Gauss–Hermite in both slopes; no node of it meets a kink.
+    let smooth = T::lit(c.smooth) * sigma <= plane.smooth_radius();
+    let mut from = plane.horizon().0.max(-reach);
+    for (i, segment) in plane.segments.iter().enumerate() {
+        let has_plateau = i == 1 || i == 2;
+        let start = from;
+        let stop = segment.end.min(reach);
+        from = from.max(stop);
+        if !(stop > start) || (smooth && i != 1) {
             continue;
         }
-        if c.ghx > 0 && from == -reach && to == reach {
-            // the whole Gaussian: only the plateau w ≤ 2 contains x = 0
-            R::HERMITE.whole(c.ghx, |u: T, weight: T| {
-                let x = sigma * u;
-                let edge2 = (x - b1) * (b2 - x) * plane.plateau_shape(x);
-                let column = Column {
-                    x,
-                    u,
-                    weight: weight * T::lit(core::f64::consts::FRAC_2_PI),
-                    edge: edge2.max(T::ZERO).sqrt(),
-                    height: plane.w(x),
-                    horizon: plane.horizon2(x).max(T::ZERO).sqrt(),
-                };
-                walk_column::<T, R>(plane, sigma, &column, &mut visit);
-            });
-            continue;
-        }
-        let wish = T::lit(c.ax + segment.offset) + T::lit(c.bx) * ((to - from) / sigma) + T::lit(c.rough_x) * excess;
-        let order = order_of(wish, R::LEGENDRE_ORDERS);
-        let (a, b) = segment.anchors;
-        let span = b - a;
-        let theta = |x: T| ((x - a) / span).max(T::ZERO).sqrt().min(T::ONE).asin();
-        let (start, end) = (theta(from), theta(to));
-        let half_step = T::HALF * (end - start);
-        let middle = T::HALF * (end + start);
-        R::LEGENDRE.whole(order, |z: T, weight: T| {
-            let (sin, cos) = (middle + half_step * z).sin_cos();
-            let x = a + span * sin.squared();
-            let u = x / sigma;
-            // √((x − A)(B − x)), without taking the differences
-            let chord = span * sin * cos;
-            let (edge, height, horizon) = match segment.plateau {
-                Plateau::None => (T::ZERO, T::ZERO, chord),
-                Plateau::Low => {
-                    (chord * plane.plateau_shape(x).sqrt(), plane.w(x), plane.horizon2(x).max(T::ZERO).sqrt())
-                }
-                Plateau::High => (chord, T::TWO, plane.horizon2(x).max(T::ZERO).sqrt()),
-            };
-            // dx/σ = 2 (B − A) sinθ cosθ dθ/σ
-            let dx = T::TWO * chord * half_step / sigma;
-            let weight = T::lit(core::f64::consts::FRAC_2_PI) * weight * dx * (-u.squared()).exp();
-            let column = Column { x, u, weight, edge, height, horizon };
-            walk_column::<T, R>(plane, sigma, &column, &mut visit);
-        });
-    }
-}
-
-/// The nodes of one column: the plateau, then the part where masking or shadowing acts, y_k < y < y_h.
-///
-/// The integrand is even in y: the positive half of a rule of 2m points on [−y, y] has the strength of 2m points.
-#[inline(always)]
-fn walk_column<T: Real, R: Rule>(plane: &SlopePlane<T>, sigma: T, column: &Column<T>, visit: &mut impl FnMut(Node<T>)) {
-    let c: Constants = R::CONSTANTS;
-    let Column { x, u, horizon, .. } = *column;
-    let u2 = u.squared();
-    let excess = excess_roughness(sigma);
-    let more = T::lit(c.rough_y) * excess - T::lit(c.cu) * u2;
-    let cos_base = plane.cos_theta_s + x * plane.sin_theta_s;
-    let one_x2 = T::ONE + x.squared();
-
-    // `v` is y/σ; `height` is W, or None for the masked branch 4w/R² − 2 = 2 (y_h − y)(y_h + y)/R²
-    let mut node = |v: T, weight: T, height: Option<T>| {
-        let y = sigma * v;
-        let inverse_r2 = T::ONE / (one_x2 + y.squared());
-        let height = match height {
-            Some(height) => height,
-            None => T::TWO * (horizon - y) * (horizon + y) * inverse_r2,
+        let nodes = match i {
+            0 => T::lit(c.ax + c.ax0),
+            3 => T::lit(c.ax + c.ax2),
+            _ => T::lit(c.ax),
         };
-        let v2 = v.squared();
-        visit(Node {
-            // the minimum absorbs rounding: an index may take √(1 − cos²)
-            cos_theta_a: (cos_base * inverse_r2.sqrt()).min(T::ONE),
-            weight: column.weight * weight * height * (-v2).exp(),
-            scaled_slope2: u2 + v2,
+        let length = (stop - start) * inverse_sigma;
+        let mut order = rounded_up(nodes + T::lit(c.bx) * length + more_columns, R::LEGENDRE_ORDERS);
+        if smooth {
+            order = c.smooth_x;
+        }
+        let (start, stop) = (segment.place(start), segment.place(stop));
+        let half_step = T::HALF * (stop - start);
+        let middle = T::HALF * (stop + start);
+        // on a long segment the columns are drawn to x = 0, where the Gaussian is, or to the end nearer to it
+        let mut across = Crowd { k: T::ZERO, pull: T::ZERO };
+        if c.crowd_x > 0.0 {
+            let peak = (segment.place(T::ZERO) - middle) / half_step;
+            across = Crowd::to_peak((T::lit(c.crowd_x) * (length - T::lit(c.crowd_from))).max(T::ZERO), peak);
+        }
+        // dx/σ = 2 (B − A) sinθ cosθ dθ/σ, dθ = 4 dt/(1 + t²), and 2/π of the whole
+        let span = segment.span();
+        let step = T::lit(16.0 / core::f64::consts::PI) * (half_step * span * inverse_sigma);
+        let table = if smooth { R::HERMITE } else { R::LEGENDRE };
+        table.whole(order, |z: T, weight: T| {
+            let mut x = sigma * z;
+            let mut weight = weight;
+            if smooth {
+                weight *= T::lit(core::f64::consts::FRAC_2_PI);
+            } else {
+                // t = tan(θ/4), a rational stand-in for the angle: tan(θ/2) = 2t/(1 − t²)
+                let (place, slope) = across.draw(z);
+                let t = middle + half_step * place;
+                let inverse = T::ONE / (T::ONE + t.squared());
+                let sin_half = T::TWO * t * inverse;
+                let cos_half = (T::ONE - t) * (T::ONE + t) * inverse;
+                let sin = T::TWO * sin_half * cos_half;
+                let cos = (cos_half - sin_half) * (cos_half + sin_half);
+                x = segment.a + span * sin.squared();
+                weight *= step * slope * (sin * cos * inverse);
+            }
+            let x2 = x.squared();
+            let u2 = x2 * inverse_sigma2;
+            let w = plane.w(x);
+            // W on the plateau
+            let height = w.min(T::TWO);
+            // What is left of y_h² and y_k² where they are small has few digits; but there W is small, or has no jump.
+            let horizon = (T::TWO * w - (T::ONE + x2)).max(T::ZERO).sqrt();
+            let edge = (T::lit(4.0) * w / (height + T::TWO) - (T::ONE + x2)).max(T::ZERO).sqrt();
+
+            let cos_base = plane.cos_theta_s * w;
+            let half_height = T::HALF * height;
+            let more = more_nodes - T::lit(c.cu) * u2;
+            let reach = sigma * (T::lit(c.ly * c.ly) - T::lit(c.kap) * u2).max(T::ONE).sqrt();
+            let top = horizon.min(reach);
+            let edge = if has_plateau { edge.min(reach) } else { T::ZERO };
+
+            // The integrand is even in y: the positive half of a rule of 2m points on [−y, y] has the strength of 2m points.
+            let mut on_plateau = edge > T::ZERO;
+            let mut middle = T::ZERO;
+            let mut half = if on_plateau { edge } else { top };
+            let scaled = half * inverse_sigma;
+            let mut order = 2 * rounded_up(T::lit(c.a1) + more + T::lit(c.b1) * scaled, R::LEGENDRE_ORDERS / 2);
+            let mut crowd = T::ZERO;
+            // q² at the end of the plateau
+            let mut compression = T::ZERO;
+            if on_plateau {
+                match c.foot {
+                    Foot::Cubic { crowd: k } => crowd = T::lit(k) * scaled.squared(),
+                    Foot::Compressed { p, rough: more } => {
+                        let p = T::lit(p) / (T::ONE + rough(more, sigma));
+                        let inverse = T::ONE / (p.squared() + scaled.squared());
+                        compression = scaled.squared() * inverse;
+                        half = sigma * (p * scaled * inverse.sqrt());
+                    }
+                }
+            }
+            if smooth {
+                (half, crowd, compression, order) = (sigma, T::ZERO, T::ZERO, 2 * c.smooth_y);
+            }
+            let mut even = true;
+            loop {
+                // twice, for the node has W/2
+                let part = T::TWO * weight * (half * inverse_sigma);
+                for (mut z, node_weight) in table.half::<T>(order) {
+                    loop {
+                        // z (1 − k + k z²): drawn to the foot of the plateau
+                        let bend = crowd * z.squared();
+                        let rest = T::ONE - (crowd - bend);
+                        let mut place = z * rest;
+                        let mut slope = rest + (bend + bend);
+                        if matches!(c.foot, Foot::Compressed { .. }) && compression > T::ZERO {
+                            let inverse = T::ONE / (T::ONE - compression * z.squared());
+                            let root = inverse.sqrt();
+                            slope = inverse * root;
+                            place = z * root;
+                        }
+                        let y = middle + half * place;
+                        let slope2 = x2 + y.squared();
+                        let inverse_r2 = T::ONE / (T::ONE + slope2);
+                        let half_w = if on_plateau {
+                            half_height
+                        } else {
+                            // 4w/R² − 2 = 2 (y_h − y)(y_h + y)/R²
+                            (horizon - y) * (horizon + y) * inverse_r2
+                        };
+                        let scaled_slope2 = slope2 * inverse_sigma2;
+                        visit(Node {
+                            // the minimum absorbs rounding: an index may take √(1 − cos²)
+                            cos_theta_a: (cos_base * inverse_r2.sqrt()).min(T::ONE),
+                            weight: part * node_weight * slope * half_w * R::gaussian(scaled_slope2),
+                            scaled_slope2,
+                        });
+                        if even || !(z > T::ZERO) {
+                            break;
+                        }
+                        z = -z;
+                    }
+                }
+                // then the part where masking or shadowing acts, y_k < y < y_h
+                half = T::HALF * (top - edge);
+                if !on_plateau || smooth || !(half > T::ZERO) {
+                    break;
+                }
+                on_plateau = false;
+                even = false;
+                middle = edge + half;
+                (crowd, compression) = (T::ZERO, T::ZERO);
+                order =
+                    rounded_up(T::lit(c.a2) + more + T::lit(2.0 * c.b2) * (half * inverse_sigma), R::LEGENDRE_ORDERS);
+            }
         });
-    };
-
-    let reach = (T::lit(c.ly * c.ly) - T::lit(c.kap) * u2).max(T::ONE).sqrt();
-    let top = (horizon / sigma).min(reach);
-    let edge = column.edge / sigma;
-    if edge <= T::ZERO {
-        let m = order_of(T::lit(c.a1) + more + T::lit(c.b1) * top, R::LEGENDRE_ORDERS / 2);
-        for (z, weight) in R::LEGENDRE.half(2 * m) {
-            node(top * z, weight * top, None);
-        }
-        return;
-    }
-
-    // v = p q/√(1 − q²) gathers the nodes where the Gaussian is
-    let end = edge.min(reach);
-    let m = order_of(T::lit(c.a1) + more + T::lit(c.b1) * end, R::LEGENDRE_ORDERS / 2);
-    let p = T::lit(c.py) / (T::ONE + T::lit(c.rough_p) * excess);
-    let q_end = end / (p.squared() + end.squared()).sqrt();
-    for (z, weight) in R::LEGENDRE.half(2 * m) {
-        let q = q_end * z;
-        let inverse = T::ONE / (T::ONE - q.squared());
-        let p_root = p * inverse.sqrt();
-        node(p_root * q, weight * q_end * p_root * inverse, Some(column.height));
-    }
-
-    let half_width = T::HALF * (top - edge);
-    if half_width > T::ZERO {
-        let order = order_of(T::lit(c.a2) + more + T::lit(2.0 * c.b2) * half_width, R::LEGENDRE_ORDERS);
-        let middle = edge + half_width;
-        R::LEGENDRE.whole(order, |z: T, weight: T| node(middle + half_width * z, weight * half_width, None));
     }
 }
 
-/// The cheap rule where no kink lies within `smooth`·σ: Gauss–Hermite in both slopes.
-#[inline(always)]
-fn smooth<T: Real, R: Rule>(plane: &SlopePlane<T>, sigma: T, visit: &mut impl FnMut(Node<T>)) {
-    let c = R::CONSTANTS;
-    R::HERMITE.whole(c.smooth_x, |u: T, weight_x: T| {
-        let x = sigma * u;
-        let w = plane.w(x);
-        let low = w.min(T::TWO);
-        let cos_base = plane.cos_theta_s + x * plane.sin_theta_s;
-        let one_x2 = T::ONE + x.squared();
-        for (v, weight_y) in R::HERMITE.half::<T>(2 * c.smooth_y) {
-            let y = sigma * v;
-            let inverse_r2 = T::ONE / (one_x2 + y.squared());
-            // 4w/R² − 2 matters only for the outermost nodes, if at all
-            let height = low.min(T::lit(4.0) * w * inverse_r2 - T::TWO).max(T::ZERO);
-            visit(Node {
-                cos_theta_a: (cos_base * inverse_r2.sqrt()).max(T::ZERO).min(T::ONE),
-                weight: T::lit(core::f64::consts::FRAC_2_PI) * weight_x * weight_y * height,
-                scaled_slope2: u.squared() + v.squared(),
-            });
-        }
-    });
+/// z + (1 − z²)(pull − k z): [−1, 1] onto itself, nodes drawn to where the slope is least, z = pull/(3 k).
+struct Crowd<T> {
+    k: T,
+    pull: T,
 }
 
-/// σ − 1 on very rough surfaces, else 0: there the scale of the integrand is that of 1 + x² + y², no longer the Gaussian's.
-/// Stays at 1 beyond σ = 2, where the tables end and no accuracy is promised.
-#[inline(always)]
-fn excess_roughness<T: Real>(sigma: T) -> T {
-    (sigma - T::ONE).max(T::ZERO).min(T::ONE)
+impl<T: Real> Crowd<T> {
+    /// To `peak`, or the end nearer to it, where the slope becomes 1 − `strength`.
+    #[inline(always)]
+    fn to_peak(strength: T, peak: T) -> Self {
+        let peak = peak.max(-T::ONE).min(T::ONE);
+        let k = strength / (T::ONE + T::lit(3.0) * peak.squared());
+        Crowd { k, pull: T::lit(3.0) * k * peak }
+    }
+
+    /// Where z goes, and the slope there.
+    #[inline(always)]
+    fn draw(&self, z: T) -> (T, T) {
+        let rest = T::ONE - z.squared();
+        let pull = self.pull - self.k * z;
+        (z + rest * pull, T::ONE - self.k * rest - T::TWO * z * pull)
+    }
 }
 
-/// The number of nodes for a wish `v`: rounded up, at least 1, at most what the table holds.
+/// `more` (σ − 1) on very rough surfaces, else 0: there the scale of the integrand is that of 1 + x² + y², no longer the
+/// Gaussian's. Stays as at σ = 2 beyond, where the tables end and no accuracy is promised.
 #[inline(always)]
-fn order_of<T: Real>(v: T, largest: usize) -> usize {
+fn rough<T: Real>(more: f64, sigma: T) -> T {
+    if more == 0.0 { T::ZERO } else { T::lit(more) * (sigma - T::ONE).max(T::ZERO).min(T::ONE) }
+}
+
+/// The whole number above, at least 1, at most `largest`.
+#[inline(always)]
+fn rounded_up<T: Real>(v: T, largest: usize) -> usize {
     // the cast saturates; NaN gives 0
-    let order = (v + T::lit(0.9999)).to_usize();
-    order.clamp(1, largest)
+    (v + T::lit(0.9999)).to_usize().clamp(1, largest)
 }
