@@ -5,7 +5,7 @@ use leafbrdf_c::{
 };
 use leafbrdf_core::real::device::F32;
 use leafbrdf_core::{
-    Angle, Dielectric, DirectionCosines, DirectionTerms, DomainError, Geometry, Grade, Illumination, Index, Leaf,
+    Dielectric, DirectionCosines, DirectionTerms, DomainError, Geometry, Grade, Illumination, Index, Leaf,
     Normalization, Real, Surface,
 };
 use leafbrdf_fit::device::{self, Workspace};
@@ -182,7 +182,7 @@ fn hemisphere(random: &mut Random, block: u32, print: &mut Print<'_>) {
     let mut hash = Hash::new();
     for _ in 0..8 {
         let draw = Draw::new(random);
-        let source = Illumination::new(Angle::from_degrees(F32(random.below(5800, 1.0 / 64.0))));
+        let source = Illumination::from_degrees(F32(random.below(5800, 1.0 / 64.0)));
         let dhrf = draw.surface().and_then(|surface| {
             let source = source.map_err(status)?;
             Ok(surface.dhrf(&source, Grade::E4d))

@@ -6,7 +6,7 @@
 
 use core::mem::MaybeUninit;
 
-use leafbrdf_core::{Angle, Grade, Illumination, Real};
+use leafbrdf_core::{Grade, Illumination, Real};
 use leafbrdf_fit::solver::{Evaluation, Minimum, Objective, SolverOptions, minimize};
 use leafbrdf_fit::{AtBound, Interval};
 use leafbrdf_prospect::{LeafParams, plates_with_slopes};
@@ -83,7 +83,7 @@ pub unsafe extern "C" fn lb_fit_cab(
         if !(0.0..=10.0).contains(&car_per_cab) {
             return Err(LB_ERR_INTERIOR);
         }
-        let zenith = Illumination::new(Angle::from_degrees(number(0.0))).map_err(|_| LB_ERR_THETA_S)?;
+        let zenith = Illumination::from_degrees(number(0.0)).map_err(|_| LB_ERR_THETA_S)?;
         let dhrf_specular = surface.surface()?.dhrf(&zenith, Grade::E4d);
         let mut misfit = Misfit { wavelengths_nm, k_lambert, dhrf_specular, held, car_per_cab };
         misfit.check()?;

@@ -2,7 +2,7 @@
 
 use core::mem::MaybeUninit;
 
-use leafbrdf_core::{Angle, Grade, Illumination};
+use leafbrdf_core::{Grade, Illumination};
 
 use crate::number::{float, number};
 use crate::status::{LB_ERR_NULL, LB_ERR_THETA_S, lb_status};
@@ -26,7 +26,7 @@ pub extern "C" fn lb_dhrf(
     let (Some(leaf), Some(out)) = (leaf, dhrf_specular) else { return LB_ERR_NULL };
     let value = |leaf: &lb_leaf| {
         let surface = leaf.surface()?;
-        let source = Illumination::new(Angle::from_degrees(number(theta_s_deg))).map_err(|_| LB_ERR_THETA_S)?;
+        let source = Illumination::from_degrees(number(theta_s_deg)).map_err(|_| LB_ERR_THETA_S)?;
         Ok(float(surface.dhrf(&source, Grade::E4d)))
     };
     give(out, value(leaf))
