@@ -31,6 +31,12 @@ impl<T: Real> Interval<T> {
         self.upper - self.lower
     }
 
+    /// `least` ≤ lower < upper ≤ `most`. One copy on a device, where flash counts.
+    #[cfg_attr(not(feature = "std"), inline(never))]
+    fn is_inside(self, least: T, most: T) -> bool {
+        self.lower >= least && self.upper <= most && self.lower < self.upper
+    }
+
     /// The point of the interior nearest to x, at least `margin` of the width away from either bound.
     #[inline(always)]
     pub(crate) fn inside(self, x: T, margin: T) -> T {
@@ -78,11 +84,7 @@ impl<T: Real> BandBounds<T> {
     /// [`FitError::Bounds`] unless −1 ≤ k_L ≤ 2, 1 < n ≤ 100, 10⁻⁴ ≤ σ ≤ 10, each with lower < upper.
     pub fn check(&self) -> Result<(), FitError> {
         let ordered = |name, expected, interval: Interval<T>, least: T, most: T| {
-            if interval.lower >= least && interval.upper <= most && interval.lower < interval.upper {
-                Ok(())
-            } else {
-                Err(FitError::Bounds { parameter: name, expected })
-            }
+            if interval.is_inside(least, most) { Ok(()) } else { Err(FitError::Bounds { parameter: name, expected }) }
         };
         ordered("k_l", "-1 ≤ lower < upper ≤ 2", self.k_lambert, -T::ONE, T::TWO)?;
         ordered("n", "1.0001 ≤ lower < upper ≤ 100", self.n, T::lit(1.0001) - T::EPSILON, T::lit(100.0))?;

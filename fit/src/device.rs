@@ -124,14 +124,12 @@ pub fn fit_band<T: Real>(
     check("weight", directions.weight)?;
     check("brdf", band.brdf)?;
     check("weight", band.weight)?;
-    let (mut total, mut sum, mut sum2, mut n_obs) = (T::ZERO, T::ZERO, T::ZERO, 0);
+    let (mut total, mut sum, mut n_obs) = (T::ZERO, T::ZERO, 0);
     for (index, (y, w)) in band.brdf.iter().zip(band.weight).enumerate() {
         if *w > T::ZERO {
             n_obs += 1;
             total += *w;
-            let w_y = *w * *y;
-            sum += w_y;
-            sum2 += w_y * *y;
+            sum += *w * *y;
         } else if *w < T::ZERO {
             return Err(FitError::NotFinite { what: "weight (negative)", index });
         }
@@ -142,19 +140,20 @@ pub fn fit_band<T: Real>(
     let bounds = &options.bounds;
     let inv_pi = T::lit(core::f64::consts::FRAC_1_PI);
     let e = |n: T| (n - T::ONE) * (n + T::ONE);
+    let mean = sum / total;
     let problem = Problem {
-        data: Data { directions, band },
+        data: &Data { directions, band },
         total,
         a: Interval::new(bounds.k_lambert.lower * inv_pi, bounds.k_lambert.upper * inv_pi),
         e: Interval::new(e(bounds.n.lower), e(bounds.n.upper)),
         sigma: bounds.sigma,
         enough: T::lit(SHARE) * options.tolerance,
-        rounding: sum2 * T::EPSILON * T::EPSILON,
         most: options.max_iterations,
+        mean,
     };
-    let mean = sum / total;
     let ladder = Ladder::new(&bounds.sigma);
-    let least = workspace.scan(&problem, &ladder, mean);
+    let (least, spread) = workspace.scan(&problem, &ladder);
+    let rounding = (spread + total * mean.squared()) * T::EPSILON.squared();
     let (mut iterations, mut converged, mut starts) = (0, false, 0);
     let Workspace { sums: [sums, ..], cost, points: [here, there, best] } = workspace;
     let (mut here, mut there, mut best) = (here, there, best);
@@ -162,7 +161,7 @@ pub fn fit_band<T: Real>(
     for pair in cost.windows(2) {
         let [(cost, e), (after, _)] = *pair else { continue };
         if cost <= before && cost < after && cost <= T::lit(CLOSE) * least && starts < options.starts.max(1) {
-            let (looks, arrived) = problem.search((e, sigma2.sqrt(), mean), sums, &mut here, &mut there);
+            let (looks, arrived) = problem.search(e, sigma2.sqrt(), rounding, sums, &mut here, &mut there);
             iterations += looks;
             if starts == 0 || here.cost < best.cost {
                 core::mem::swap(&mut here, &mut best);

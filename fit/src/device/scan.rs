@@ -60,9 +60,9 @@ impl<T: Real> Ladder<T> {
 impl<T: Real> Workspace<T> {
     /// χ² of every rung at its best n. `mean` is that of the data.
     #[inline(always)]
-    pub(super) fn scan(&mut self, problem: &Problem<'_, T>, ladder: &Ladder<T>, mean: T) -> T {
-        let Problem { data, total, a, e, .. } = problem;
-        let total = *total;
+    pub(super) fn scan(&mut self, problem: &Problem<'_, T>, ladder: &Ladder<T>) -> (T, T) {
+        let Problem { data, total, a, e, mean, .. } = problem;
+        let (total, mean) = (*total, *mean);
         let inv_sigma2 = T::ONE / ladder.sigma2;
         let at = Look {
             e: T::lit(E_0),
@@ -110,7 +110,7 @@ impl<T: Real> Workspace<T> {
             }
             at_e *= ratio;
         }
-        least
+        (least, y_y)
     }
 }
 

@@ -14,17 +14,17 @@ const REACH: f64 = 0.7;
 const NEAR: f64 = 0.1;
 /// The problem of one band.
 pub(super) struct Problem<'a, T> {
-    pub data: Data<'a, T>,
+    pub data: &'a Data<'a, T>,
     /// Σ ω
     pub total: T,
     /// bounds of k_L/π, n² − 1, σ
     pub a: Interval<T>,
     pub e: Interval<T>,
     pub sigma: Interval<T>,
-    /// stop where the predicted decrease is below this share of χ²,
+    /// stop where the predicted decrease is below this share of χ²
     pub enough: T,
-    /// or below this
-    pub rounding: T,
+    /// mean of the data
+    pub mean: T,
     /// the most looks at the data
     pub most: u32,
 }
@@ -64,7 +64,7 @@ impl<T: Real> Problem<'_, T> {
         let inv_sigma2 = T::ONE / sigma.squared();
         let kappa = inv_sigma2 * T::lit(core::f64::consts::FRAC_1_PI);
         let at = Look { e, inv_sigma2, kappa, a: near, squarings: 0, negligible: T::ZERO };
-        let rest = look(&self.data, &at, core::slice::from_mut(sums));
+        let rest = look(self.data, &at, core::slice::from_mut(sums));
         let inv_total = T::ONE / self.total;
         let best = near + rest.d * inv_total;
         let a = self.a.clip(best);
@@ -83,16 +83,18 @@ impl<T: Real> Problem<'_, T> {
         };
     }
 
-    /// From (e, σ) and the mean of the data to the minimum, left in `here`: looks at the data, and whether it arrived.
+    /// From (e, σ) to the minimum, left in `here`: looks at the data, and whether it arrived. `rounding`: what χ² is of data that are rounding.
     #[inline(always)]
     pub fn search<'p>(
         &self,
-        start: (T, T, T),
+        mut to_e: T,
+        mut to_sigma: T,
+        rounding: T,
         sums: &mut Sums<T>,
         here: &mut &'p mut Point<T>,
         there: &mut &'p mut Point<T>,
     ) -> (u32, bool) {
-        let (mut to_e, mut to_sigma, mut near_a) = start;
+        let mut near_a = self.mean;
         let mut reach = T::lit(REACH);
         let (mut predicted, mut largest) = (T::MAX, T::ONE);
         let mut looks = 0;
@@ -114,7 +116,7 @@ impl<T: Real> Problem<'_, T> {
             let [h_0, h_01, h_1] = here.h;
             // without the box; then the least inside it, exact where at most one side of it holds
             let t = h_01 / h_1;
-            let mut z_0 = step(here.e, (t * g_1 - g_0) / (h_0 - t * h_01), reach, &self.e).0;
+            let mut z_0 = (t * g_1 - g_0) / (h_0 - t * h_01);
             let mut z_1 = T::ZERO;
             for _ in 0..3 {
                 (z_1, to_sigma) = step(here.sigma, -(g_1 + h_01 * z_0) / h_1, reach, &self.sigma);
@@ -122,7 +124,7 @@ impl<T: Real> Problem<'_, T> {
             }
             predicted = -(z_0 * (T::TWO * (g_0 + h_01 * z_1) + h_0 * z_0) + z_1 * (T::TWO * g_1 + h_1 * z_1));
             largest = z_0.abs().max(z_1.abs());
-            if largest < T::lit(NEAR) && predicted <= self.enough * here.cost + self.rounding {
+            if largest < T::lit(NEAR) && predicted <= self.enough * here.cost + rounding {
                 // not worth a look at the data, and yet a step nearer
                 here.e = to_e;
                 here.sigma = to_sigma;
