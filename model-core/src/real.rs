@@ -129,14 +129,11 @@ pub trait Real:
         (x.sqrt(), y.sqrt())
     }
 
-    /// The unit of [`decay`](Self::decay)'s argument: 1, or log₂e where a number's own exponential is one of base 2.
-    #[doc(hidden)]
-    const DECAY_UNIT: f64 = 1.0;
-    /// By how much [`decay`](Self::decay) is too large.
+    /// By how much [`decay`](Self::decay) is too large: for the caller to fold into a constant of its own.
     #[doc(hidden)]
     const DECAY_GAIN: f64 = 1.0;
 
-    /// `DECAY_GAIN` · e^(−x/`DECAY_UNIT`) for x ≥ 0: constants that the caller has folded into others already.
+    /// `DECAY_GAIN` · e⁻ˣ for x ≥ 0.
     #[doc(hidden)]
     #[inline(always)]
     fn decay(self) -> Self {

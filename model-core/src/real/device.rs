@@ -191,7 +191,6 @@ impl Real for F32 {
     fn exp(self) -> Self {
         F32(fixed::exp(self.0))
     }
-    const DECAY_UNIT: f64 = core::f64::consts::LOG2_E;
     const DECAY_GAIN: f64 = fixed::DECAY_GAIN;
     #[inline(always)]
     fn decay(self) -> Self {
@@ -232,7 +231,7 @@ impl Real for F32 {
         let (least, span) = (lower.to_bits(), upper.to_bits() - lower.to_bits());
         if least == 0 {
             // −0 is 0
-            return bits <= span || bits == 1 << 31;
+            return !(bits > span && bits != 1 << 31);
         }
         bits.wrapping_sub(least) <= span
     }
