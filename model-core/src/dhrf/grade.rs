@@ -118,7 +118,7 @@ impl Rule for E4d {
 impl Rule for E6 {
     #[rustfmt::skip]
     const CONSTANTS: Constants = Constants {
-        lx: 4.348, ly: 3.897, kap: 1.057, ax: 7.511, bx: 2.926, ax0: -1.647, ax2: -3.8,
+        lx: 4.348, ly: 3.897, kap: 1.057, ax: 7.511, bx: 2.926, ax0: -1.647, ax2: -3.4,
         a1: 2.26, b1: 1.569, a2: 3.588, b2: 0.837, cu: 0.273, crowd_x: 0.0, crowd_from: 0.0,
         foot: Foot::Compressed { p: 1.964, rough: 0.3 },
         rough_x: 6.0, rough_y: 1.0, smooth: 3.6, smooth_x: 5, smooth_y: 3,
