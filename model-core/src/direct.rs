@@ -148,7 +148,7 @@ extern "C" fn half_vector(theta_s: f32, theta_v: f32, phi_v: f32) -> HalfVector 
     if !F32(phi_v).abs().is_within(0.0, 360.0) {
         return refused(-3.0);
     }
-    let sines = fixed::direction(theta_s, theta_v, phi_v);
+    let sines = fixed::direction_here(theta_s, theta_v, phi_v);
     // the unit of a sine is 2⁻³⁰, that of a product 2⁻⁶⁰: nothing is scaled
     let number = |q30: u32| F32(q30 as f32);
     // what the exponent takes is rounded after sum and difference, and after the square: near the mirror direction nothing is lost

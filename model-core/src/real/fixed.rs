@@ -193,6 +193,24 @@ pub(crate) struct Sines {
 /// Angles in degrees, 0 ≤ θ < 90 and |φ| ≤ 360.
 #[inline(always)]
 pub(crate) fn direction(theta_s: f32, theta_v: f32, phi_v: f32) -> Sines {
+    direction_by(sine, theta_s, theta_v, phi_v)
+}
+
+/// The same without a call: 250 bytes more, 60 instructions less where there is a floating-point unit.
+#[inline(always)]
+pub(crate) fn direction_here(theta_s: f32, theta_v: f32, phi_v: f32) -> Sines {
+    #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
+    {
+        direction_by(sine_here, theta_s, theta_v, phi_v)
+    }
+    #[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
+    {
+        direction_by(sine, theta_s, theta_v, phi_v)
+    }
+}
+
+#[inline(always)]
+fn direction_by(sine: impl Fn(u32) -> u32, theta_s: f32, theta_v: f32, phi_v: f32) -> Sines {
     // degrees in units of 2⁻²⁵, so that a complement is exact
     let (s, v) = (truncated(theta_s, 25), truncated(theta_v, 25));
     // |φ|/2, Q24; cos is even about 180°, and what is left of 90° has all the digits near the mirror direction
@@ -207,9 +225,13 @@ pub(crate) fn direction(theta_s: f32, theta_v: f32, phi_v: f32) -> Sines {
 }
 
 /// The sine, Q30, of an angle from 0° to 90°, in degrees Q25.
-#[cfg_attr(all(target_arch = "arm", target_abi = "eabihf"), inline(always))]
-#[cfg_attr(not(all(target_arch = "arm", target_abi = "eabihf")), inline(never))]
+#[inline(never)]
 fn sine(r: u32) -> u32 {
+    sine_here(r)
+}
+
+#[inline(always)]
+fn sine_here(r: u32) -> u32 {
     // sin(128° r)/r by z = r², r ≤ 90/128, Q30: 4e-11
     let z = mul_high(r, r) as i32;
     let sum = 0x003E_8224_i32.wrapping_add(signed_mul_high(-0x0002_B529, z));

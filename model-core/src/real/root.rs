@@ -105,7 +105,7 @@ fn in_integers(x: f32) -> f32 {
     let mut mantissa = bits & 0x007F_FFFF;
     // one test for zeros, subnormals, infinity, NaN and what is negative
     if (exponent - 1) as u32 >= 254 {
-        if bits << 1 == 0 || bits == f32::INFINITY.to_bits() || x.is_nan() {
+        if bits << 1 == 0 || bits == f32::INFINITY.to_bits() || bits << 1 > 0xFF00_0000 {
             return x;
         }
         if bits >> 31 == 1 {
