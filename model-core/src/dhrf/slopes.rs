@@ -50,7 +50,7 @@ impl<T: Real> Segment<T> {
     /// tan(θ/4) of the map, a rational stand-in for the angle; x beyond an anchor is taken as the anchor.
     #[inline(never)]
     pub(super) fn place(&self, x: T) -> T {
-        let (low, high) = ((x - self.a).max(T::ZERO).sqrt(), (self.b - x).max(T::ZERO).sqrt());
+        let (low, high) = T::sqrt_of_both((x - self.a).max(T::ZERO), (self.b - x).max(T::ZERO));
         let tan_half = low / (self.span().sqrt() + high);
         tan_half / (T::ONE + (T::ONE + tan_half.squared()).sqrt())
     }
@@ -112,17 +112,18 @@ impl<T: Real> SlopePlane<T> {
 }
 
 impl SlopePlane<F32> {
-    /// [`new`](Self::new) for a device: sines from degrees in integers, 1e-9 absolute.
+    /// [`new`](Self::new) for a device: by one sine in integers, from degrees.
     #[inline]
     pub(super) fn from_degrees(theta_s: F32) -> Result<Self, DomainError> {
         // to the last number below 90
         if !theta_s.is_within(0.0, 89.999_992) {
             return Err(DomainError::new("theta_s", "0° ≤ theta_s < 90°"));
         }
-        // as if the third of the complement were a view's zenith angle
-        let sines = fixed::direction(theta_s.0, ((F32(90.0) - theta_s) / F32(3.0)).0, 0.0);
-        let number = |q30: u32| F32(fixed::scaled(q30, -30));
-        let b1 = number(sines.sin_theta_v) / number(sines.cos_theta_v);
-        Ok(Self::from_sines(number(sines.sin_theta_s), number(sines.cos_theta_s), b1))
+        // β = (90° − θ_s)/3 ≤ 30° has all the digits that cos θ_s = sin 3β and b₁ = tan β have near 90°
+        let sin = F32(fixed::scaled(fixed::direction(((F32(90.0) - theta_s) / F32(3.0)).0, 0.0, 0.0).sin_theta_s, -30));
+        let cos = ((F32(1.0) - sin) * (F32(1.0) + sin)).sqrt();
+        let rest = (F32(1.0) - F32(2.0) * sin) * (F32(1.0) + F32(2.0) * sin);
+        // cos 3β = cos β (1 − 4 sin²β), of which rounding may leave less than 0 at normal incidence
+        Ok(Self::from_sines((cos * rest).max(F32(0.0)), sin * (F32(2.0) + rest), sin / cos))
     }
 }

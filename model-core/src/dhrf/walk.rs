@@ -84,8 +84,9 @@ pub(super) fn walk<T: Real, R: Rule>(plane: &SlopePlane<T>, sigma: T, mut visit:
             // W on the plateau
             let height = w.min(T::TWO);
             // What is left of y_h² and y_k² where they are small has few digits; but there W is small, or has no jump.
-            let horizon = (T::TWO * w - (T::ONE + x2)).max(T::ZERO).sqrt();
-            let edge = (T::lit(4.0) * w / (height + T::TWO) - (T::ONE + x2)).max(T::ZERO).sqrt();
+            let horizon2 = T::TWO * w - (T::ONE + x2);
+            let edge2 = T::lit(4.0) * w / (height + T::TWO) - (T::ONE + x2);
+            let (horizon, edge) = T::sqrt_of_both(horizon2.max(T::ZERO), edge2.max(T::ZERO));
 
             let cos_base = plane.cos_theta_s * w;
             let half_height = T::HALF * height;
