@@ -6,17 +6,16 @@
 
 use core::mem::MaybeUninit;
 
-use leafbrdf_core::{Grade, Illumination, Real};
+use leafbrdf_core::Real;
 use leafbrdf_fit::solver::{Evaluation, Minimum, Objective, SolverOptions, minimize};
 use leafbrdf_fit::{AtBound, Interval};
 use leafbrdf_prospect::{LeafParams, plates_with_slopes};
 
 use crate::border::slice;
+use crate::hemisphere;
 use crate::interior::{LB_SLICE_BANDS, LB_SLICE_FIRST_NM, LB_SLICE_STEP_NM, Wavelength, lb_interior};
 use crate::number::{Number, float, number};
-use crate::status::{
-    LB_ERR_DATA, LB_ERR_INTERIOR, LB_ERR_NULL, LB_ERR_THETA_S, LB_ERR_TOO_FEW, LB_ERR_WAVELENGTH, lb_status,
-};
+use crate::status::{LB_ERR_DATA, LB_ERR_INTERIOR, LB_ERR_NULL, LB_ERR_TOO_FEW, LB_ERR_WAVELENGTH, lb_status};
 use crate::surface::{give, lb_leaf};
 
 /// What lb_fit_cab finds.
@@ -83,8 +82,7 @@ pub unsafe extern "C" fn lb_fit_cab(
         if !(0.0..=10.0).contains(&car_per_cab) {
             return Err(LB_ERR_INTERIOR);
         }
-        let zenith = Illumination::from_degrees(number(0.0)).map_err(|_| LB_ERR_THETA_S)?;
-        let dhrf_specular = surface.surface()?.dhrf(&zenith, Grade::E4d);
+        let dhrf_specular = hemisphere::specular(surface, number(0.0))?;
         let mut misfit = Misfit { wavelengths_nm, k_lambert, dhrf_specular, held, car_per_cab };
         misfit.check()?;
         Ok(misfit.fit())

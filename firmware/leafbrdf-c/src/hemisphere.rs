@@ -4,7 +4,7 @@ use core::mem::MaybeUninit;
 
 use leafbrdf_core::{Grade, Illumination};
 
-use crate::number::{float, number};
+use crate::number::{Number, float, number};
 use crate::status::{LB_ERR_NULL, LB_ERR_THETA_S, lb_status};
 use crate::surface::{give, lb_leaf};
 
@@ -24,10 +24,13 @@ pub extern "C" fn lb_dhrf(
     dhrf_specular: Option<&mut MaybeUninit<f32>>,
 ) -> lb_status {
     let (Some(leaf), Some(out)) = (leaf, dhrf_specular) else { return LB_ERR_NULL };
-    let value = |leaf: &lb_leaf| {
-        let surface = leaf.surface()?;
-        let source = Illumination::from_degrees(number(theta_s_deg)).map_err(|_| LB_ERR_THETA_S)?;
-        Ok(float(surface.dhrf(&source, Grade::E4d)))
-    };
-    give(out, value(leaf))
+    give(out, specular(leaf, number(theta_s_deg)).map(float))
+}
+
+/// For `lb_dhrf` and `lb_fit_cab`: one copy, with the illumination and the rule in one frame of the stack.
+#[inline(never)]
+pub(crate) fn specular(leaf: &lb_leaf, theta_s_deg: Number) -> Result<Number, lb_status> {
+    let surface = leaf.surface()?;
+    let source = Illumination::from_degrees(theta_s_deg).map_err(|_| LB_ERR_THETA_S)?;
+    Ok(surface.dhrf(&source, Grade::E4d))
 }
