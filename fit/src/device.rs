@@ -8,7 +8,7 @@
 //!   over the directions a step, k_L at its best inside its bounds for each;
 //! - the normal matrix of the last step gives the standard errors (`device/report.rs`), by the server's rules.
 //!
-//! Minimum and errors are the server's: in single precision within 0.05 standard errors for 1,200 leaves with noise and with a second lobe that the
+//! Minimum and errors are the server's: in single precision within 0.1 standard errors for 1,200 leaves with noise, half of them with a second lobe that the
 //! model does not have; within 0.2 where a bound of k_L leaves residuals as large as the lobe, for there the steps shorten slowly. Of 3,000 such bands
 //! none ended more than 0.3 % of χ² above the server's optimum (`tests/device.rs`).
 //!

@@ -107,8 +107,10 @@ fn the_device_finds_the_servers_optimum() {
 fn parameters_and_their_errors_are_the_servers() {
     let geometries = goniometer();
     let mut random = Random(4);
-    for case in 0..200 {
-        let y = measured(&mut random, &geometries);
+    let mut farthest = 0.0_f64;
+    for case in 0..1200 {
+        let leaf = if case % 2 == 0 { measured } else { awkward };
+        let y = leaf(&mut random, &geometries);
         let device = on_device(&geometries, &y, &[1.0; 260], &BandOptions::table_3());
         let server = on_server(&geometries, &y);
         for p in 0..3 {
@@ -119,15 +121,15 @@ fn parameters_and_their_errors_are_the_servers() {
                 "{case}: {device:?} {server:?}"
             );
             if let (Some(ours), Some(theirs)) = (device.standard_errors[p], server.standard_errors[p]) {
-                assert!(
-                    (device.parameters[p] - server.parameters[p]).abs() < 0.1 * theirs,
-                    "{case}: {device:?} {server:?}"
-                );
+                let far = (device.parameters[p] - server.parameters[p]).abs() / theirs;
+                farthest = farthest.max(far);
+                assert!(far < 0.1, "{case}: {device:?} {server:?}");
                 assert!((ours / theirs - 1.0).abs() < 0.05, "{case}: {device:?} {server:?}");
             }
         }
         assert!((device.rmse / server.rmse() - 1.0).abs() < 1e-3, "{case}: {device:?} {server:?}");
     }
+    println!("at most {farthest} standard errors from the server's");
 }
 
 #[test]
