@@ -44,7 +44,7 @@ pub(crate) fn sqrt_of_both(x: f32, y: f32) -> (f32, f32) {
 /// VSQRT. `core` offers no square root, and the one of the `libm` crate costs 48 instructions instead of 5. Stable assembly may
 /// clobber a register of this unit, but not take one as operand: hence the moves.
 #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
-#[allow(unsafe_code)] // with the next one the only place: an instruction that stable Rust reaches by assembly only
+#[allow(unsafe_code)] // here and next: an instruction that stable Rust reaches by assembly only
 #[inline(always)]
 fn by_instruction(x: f32) -> f32 {
     let result: u32;
