@@ -85,7 +85,8 @@ impl Table {
 
 #[inline(always)]
 fn needs_second_word<T: Real>() -> bool {
-    T::EPSILON < T::lit(1e-10)
+    // of numbers that the compiler knows, also where a comparison of `T` is a call
+    T::EPSILON.to_f64() < 1e-10
 }
 
 #[inline(always)]
