@@ -72,43 +72,45 @@ pub(super) struct Rest<T> {
     pub d_d: T,
 }
 
-/// The scan: u = D₀ F, v = D₀ ∂F/∂ln e at `e` for σ² and its halves, D₀ = exp(−tan²α/σ²)(1 + tan²α)² weight; the rung's factor
-/// 1/(πσ²) is left out. d = y − a.
-///
-/// The search (`kappa`, 1/(πσ²), is not 0): u = ∂s/∂ln e, v = ∂s/∂ln σ of the lobe s. d = y − a − s.
-pub(super) struct Look<T> {
-    pub e: T,
-    pub inv_sigma2: T,
-    pub kappa: T,
-    pub a: T,
-    /// from rung to rung the exponential is squared so many times
-    pub squarings: u32,
-    /// a rung adds nothing once its exponential is below this
-    pub negligible: T,
-}
+/// A rung of the scan adds nothing once its exponential is below this.
+const NEGLIGIBLE: f64 = 1e-6;
 
-/// One pass over the directions.
+/// One pass over the directions at `e` and σ². a is k_L/π.
+///
+/// The scan (`kappa` is 0): u = D₀ F, v = D₀ ∂F/∂ln e for σ² and its halves, D₀ = exp(−tan²α/σ²)(1 + tan²α)² weight; the rung's factor
+/// 1/(πσ²) is left out, and from rung to rung the exponential is squared `squarings` times. d = y − a.
+///
+/// The search (`kappa` is 1/(πσ²)), for one set of sums: u = ∂s/∂ln e, v = ∂s/∂ln σ of the lobe s. d = y − a − s.
 #[inline(never)]
-pub(super) fn look<T: Real>(data: &Data<'_, T>, at: &Look<T>, sums: &mut [Sums<T>]) -> Rest<T> {
+pub(super) fn look<T: Real>(
+    data: &Data<'_, T>,
+    sums: &mut [Sums<T>],
+    squarings: u32,
+    e: T,
+    inv_sigma2: T,
+    kappa: T,
+    a: T,
+) -> Rest<T> {
     // a zero that the compiler does not know, or it would call memset
     #[expect(clippy::eq_op)]
-    let zero = at.e - at.e;
+    let zero = e - e;
     let mut rest = Rest { d: T::ZERO, d_d: T::ZERO };
-    let searching = at.kappa > T::ZERO;
+    let searching = kappa > T::ZERO;
+    let negligible = if searching { T::ZERO } else { T::lit(NEGLIGIBLE) };
     for sums in sums.iter_mut() {
         *sums = Sums { u: zero, v: zero, u_u: zero, u_v: zero, v_v: zero, d_u: zero, d_v: zero };
     }
     let Data { directions, band } = data;
     let terms = directions.cos_theta_a.iter().zip(directions.tan2_alpha).zip(directions.weight);
     for ((((cos_theta_a, tan2_alpha), weight), y), w) in terms.zip(band.brdf).zip(band.weight) {
-        let (f, slope) = fresnel(at.e, *cos_theta_a);
+        let (f, slope) = fresnel(e, *cos_theta_a);
         let base = *weight * (T::ONE + *tan2_alpha).squared();
-        let tau = *tan2_alpha * at.inv_sigma2;
+        let tau = *tan2_alpha * inv_sigma2;
         let mut lobe = (-tau).exp();
         let (mut u, mut v) = (base * f, base * slope);
-        let mut d = *y - at.a;
+        let mut d = *y - a;
         if searching {
-            lobe *= at.kappa;
+            lobe *= kappa;
             // ∂ ln D/∂ ln σ = 2 (tan²α/σ² − 1)
             d -= lobe * u;
             (u, v) = (v, u * (T::TWO * tau - T::TWO));
@@ -117,11 +119,11 @@ pub(super) fn look<T: Real>(data: &Data<'_, T>, at: &Look<T>, sums: &mut [Sums<T
         rest.d += w_d;
         rest.d_d += w_d * d;
         for sums in sums.iter_mut() {
-            if lobe < at.negligible {
+            if lobe < negligible {
                 break;
             }
             sums.add(*w, d, lobe * u, lobe * v);
-            for _ in 0..at.squarings {
+            for _ in 0..squarings {
                 lobe = lobe.squared();
             }
         }

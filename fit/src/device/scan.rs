@@ -7,7 +7,7 @@
 use leafbrdf_core::Real;
 
 use super::Workspace;
-use super::lobe::{Look, fresnel, look};
+use super::lobe::{fresnel, look};
 use super::search::Problem;
 use crate::bounds::Interval;
 
@@ -15,9 +15,6 @@ use crate::bounds::Interval;
 pub(super) const RUNGS: usize = 16;
 /// Halvings of the interval of ln e: 2⁴ + 1 values of n are tried with every rung.
 const ROOTS: u32 = 5;
-
-/// A rung adds nothing to the sums once its exponential is below this.
-const NEGLIGIBLE: f64 = 1e-6;
 
 /// e = n² − 1 that F is developed about: n = 1.5.
 const E_0: f64 = 1.25;
@@ -58,23 +55,15 @@ impl<T: Real> Ladder<T> {
 }
 
 impl<T: Real> Workspace<T> {
-    /// χ² of every rung at its best n. `mean` is that of the data.
+    /// χ² of every rung at its best n: the least of them, and Σ ω (y − mean)².
     #[inline(always)]
     pub(super) fn scan(&mut self, problem: &Problem<'_, T>, ladder: &Ladder<T>) -> (T, T) {
         let Problem { data, total, a, e, mean, .. } = problem;
         let (total, mean) = (*total, *mean);
         let inv_sigma2 = T::ONE / ladder.sigma2;
-        let at = Look {
-            e: T::lit(E_0),
-            inv_sigma2,
-            kappa: T::ZERO,
-            a: mean,
-            squarings: ladder.squarings,
-            negligible: T::lit(NEGLIGIBLE),
-        };
         let rungs = self.sums.get_mut(..ladder.rungs).unwrap_or(&mut []);
         let mut least = T::MAX;
-        let y_y = look(data, &at, rungs).d_d;
+        let y_y = look(data, rungs, ladder.squarings, T::lit(E_0), inv_sigma2, T::ZERO, mean).d_d;
         for cost in &mut self.cost {
             *cost = (T::MAX, T::ONE);
         }

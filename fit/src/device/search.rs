@@ -5,7 +5,7 @@
 
 use leafbrdf_core::Real;
 
-use super::lobe::{Data, Look, Sums, look};
+use super::lobe::{Data, Sums, look};
 use crate::bounds::Interval;
 
 /// The longest step of ln e and ln σ.
@@ -63,8 +63,7 @@ impl<T: Real> Problem<'_, T> {
     fn look(&self, e: T, sigma: T, near: T, sums: &mut Sums<T>, point: &mut Point<T>) {
         let inv_sigma2 = T::ONE / sigma.squared();
         let kappa = inv_sigma2 * T::lit(core::f64::consts::FRAC_1_PI);
-        let at = Look { e, inv_sigma2, kappa, a: near, squarings: 0, negligible: T::ZERO };
-        let rest = look(self.data, &at, core::slice::from_mut(sums));
+        let rest = look(self.data, core::slice::from_mut(sums), 0, e, inv_sigma2, kappa, near);
         let inv_total = T::ONE / self.total;
         let best = near + rest.d * inv_total;
         let a = self.a.clip(best);
