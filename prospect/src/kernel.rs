@@ -164,17 +164,27 @@ fn front<L: Real>(k: &Block<L>, faces: &[Block<L>; 3], m: L) -> Front<L> {
     Front { side, k_ln_k, plates, pairs, decays }
 }
 
+impl<L: Real> Front<L> {
+    /// (dτ/dK)/τ of the block that this was made of.
+    #[inline(always)]
+    fn log_slopes(&self, k: &Block<L>, faces: &[Block<L>; 3]) -> Block<L> {
+        let mut tau_inverse = Block::of(L::ZERO);
+        for i in 0..BLOCK {
+            // t = t₉₀ t₂₁ τ/(1 − ρ²τ²), and 1/2t is there
+            let t_inverse = self.pairs.half_t[i] + self.pairs.half_t[i];
+            tau_inverse[i] = (faces[1][i] * faces[2][i]) * self.plates.inverse[i] * t_inverse;
+        }
+        log_slopes(k, &self.k_ln_k, &tau_inverse, self.side)
+    }
+}
+
 /// Piles of `m` equal plates (see [`Pile`]), one block: `faces` of isotropic light on either side.
 #[inline(always)]
 pub(crate) fn piles<L: Real>(k: &Block<L>, faces: &[Block<L>; 3], m: L, series: &SlopeSeries<L>) -> Piles<L> {
     let zero = Block::of(L::ZERO);
-    let Front { side, k_ln_k, plates, pairs, decays } = front(k, faces, m);
-    let mut tau_inverse = zero;
-    for i in 0..BLOCK {
-        // t = t₉₀ t₂₁ τ/(1 − ρ²τ²), and 1/2t is there
-        tau_inverse[i] = (faces[1][i] * faces[2][i]) * plates.inverse[i] * (pairs.half_t[i] + pairs.half_t[i]);
-    }
-    let log_slope = log_slopes(k, &k_ln_k, &tau_inverse, side);
+    let front = front(k, faces, m);
+    let log_slope = front.log_slopes(k, faces);
+    let Front { plates, pairs, decays, .. } = front;
     let mut piles = Piles { r: zero, t: zero, dr_dk: zero, dt_dk: zero, dr_dn: zero, dt_dn: zero };
     for i in 0..BLOCK {
         let plate = plates.at(i);
@@ -223,7 +233,8 @@ fn block<L: Real, S: Sink<T>, T: Lanes<Lane = L>>(
         dr_dn: zero,
         dt_dn: zero,
     };
-    let Front { side, k_ln_k, plates, pairs, decays } = front(&k, faces, m);
+    let front = front(&k, faces, m);
+    let Front { plates, pairs, decays, .. } = &front;
     let mut reciprocals = Reciprocals { h: zero, d: zero };
     for i in 0..BLOCK {
         let (plate, pair, decay) = (plates.at(i), pairs.at(i), decays.at(i));
@@ -235,12 +246,7 @@ fn block<L: Real, S: Sink<T>, T: Lanes<Lane = L>>(
         results.absorptance[i] = absorptance;
     }
     if S::SLOPES {
-        let mut tau_inverse = zero;
-        for i in 0..BLOCK {
-            // t = t₉₀ t₂₁ τ/(1 − ρ²τ²), and 1/2t is there
-            tau_inverse[i] = (faces[1][i] * faces[2][i]) * plates.inverse[i] * (pairs.half_t[i] + pairs.half_t[i]);
-        }
-        let log_slope = log_slopes(&k, &k_ln_k, &tau_inverse, side);
+        let log_slope = front.log_slopes(&k, faces);
         for i in 0..BLOCK {
             let plate = plates.at(i);
             let slope = plate.slope(log_slope[i]);
