@@ -1,12 +1,11 @@
 //! Precision budgets: function × number type, against double precision at the same (rounded) inputs.
 
+#[path = "common/random.rs"]
+mod random;
+
 use leafbrdf_core::{Angle, DirectionCosines, Geometry, Portable, Real, Surface};
 use proptest::prelude::*;
-
-/// `cases` random points that meet the test's assumption, whatever share of the draws does.
-fn cases(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, max_global_rejects: 20 * cases, failure_persistence: None, ..ProptestConfig::default() }
-}
+use random::{cases, single};
 
 /// Distance in units of the last place of `T`'s format at `exact`.
 fn ulps_f64(value: f64, exact: f64) -> f64 {
@@ -32,7 +31,9 @@ proptest! {
     }
 
     #[test]
-    fn portable_exp_and_ln_are_within_one_ulp_in_f32(x in -86.98..88.7_f32, y in 1e-37..1e37_f32, z in 0.5..2.0_f32) {
+    fn portable_exp_and_ln_are_within_one_ulp_in_f32(
+        x in single(-86.98..88.7), y in single(1e-37..1e37), z in single(0.5..2.0),
+    ) {
         prop_assert!(ulps_f32(Portable(x).exp().0, f64::from(x).exp()) <= 1.0, "exp {x}");
         prop_assert!(ulps_f32(Portable(y).ln().0, f64::from(y).ln()) <= 1.0, "ln {y}");
         prop_assert!(ulps_f32(Portable(z).ln().0, f64::from(z).ln()) <= 1.0, "ln {z}");
@@ -67,8 +68,8 @@ struct Point {
 
 impl Point {
     fn any() -> impl Strategy<Value = Point> {
-        (1.0..5.0_f32, -2.0..0.3_f32, 0.0..89.9_f32, 0.0..89.9_f32, 0.0..1.0_f32, -3.0..0.0_f32).prop_map(
-            |(n, log_sigma, theta_s, free, phi_v, closeness)| {
+        (single(1.0..5.0), single(-2.0..0.3), single(0.0..89.9), single(0.0..89.9), single(0.0..1.0), single(-3.0..0.0))
+            .prop_map(|(n, log_sigma, theta_s, free, phi_v, closeness)| {
                 let sigma = 10.0_f32.powf(log_sigma);
                 // half of the points near the mirror direction, where the lobe is
                 let near = 10.0_f32.powf(closeness) * 40.0;
@@ -78,8 +79,7 @@ impl Point {
                     (free, 720.0 * (phi_v - 0.5))
                 };
                 Point { n, sigma, theta_s, theta_v, phi_v }
-            },
-        )
+            })
     }
 
     fn evaluate<T: Real>(self) -> (f64, f64) {
@@ -108,7 +108,8 @@ proptest! {
     // The same model from a table of sines and cosines: angles 1–79°, as in the embedded figures (7e-6 reached there).
     #[test]
     fn f32_brdf_from_cosines_is_within_1e_5_where_the_exponent_is_below_14(
-        theta_s in 1.0..79.0_f64, theta_v in 1.0..79.0_f64, phi in 0.0..180.0_f64, n in 1.1..2.0_f32, sigma in 0.05..0.9_f32,
+        theta_s in 1.0..79.0_f64, theta_v in 1.0..79.0_f64, phi in 0.0..180.0_f64, n in single(1.1..2.0),
+        sigma in single(0.05..0.9),
     ) {
         let directions = DirectionCosines {
             cos_theta_s: theta_s.to_radians().cos() as f32,

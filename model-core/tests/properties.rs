@@ -1,15 +1,14 @@
 //! The laws of the surface model, in f32 and f64. Each test is named after the law it defends.
 
+#[path = "common/random.rs"]
+mod random;
+
 use leafbrdf_core::{
     Absorbing, Angle, Dielectric, Diffuse, DirectionTerms, Geometry, Index, Lambert, Leaf, Normalization, Portable,
     Real, Surface, facet, masking,
 };
 use proptest::prelude::*;
-
-/// `cases` random points that meet the test's assumption, whatever share of the draws does.
-fn cases(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, max_global_rejects: 20 * cases, failure_persistence: None, ..ProptestConfig::default() }
-}
+use random::{cases, single};
 
 fn geometry<T: Real>(theta_s: f64, theta_v: f64, phi_v: f64) -> Geometry<T> {
     let deg = |x| Angle::from_degrees(T::lit(x));
@@ -261,7 +260,7 @@ proptest! {
     // The laws above that are stated in f64, once more in f32; bounds are those of f32 rounding (6e-8) times the number of
     // operations and, in the tail, the exponent.
     #[test]
-    fn single_precision_keeps_the_limits_of_fresnel(n in 1.01..100.0_f32, kappa in 0.0..100.0_f32) {
+    fn single_precision_keeps_the_limits_of_fresnel(n in single(1.01..100.0), kappa in single(0.0..100.0)) {
         let real = Dielectric::new(n).unwrap();
         prop_assert!((real.fresnel(0.0) - 1.0).abs() <= 8.0 * f32::EPSILON);
         prop_assert!((Absorbing::new(n, kappa).unwrap().fresnel(0.0) - 1.0).abs() <= 16.0 * f32::EPSILON);
@@ -274,7 +273,7 @@ proptest! {
 
     #[test]
     fn single_precision_density_falls_with_tilt_exactly_while_sigma_is_at_most_one_over_root_two(
-        sigma in 0.01..2.0_f32, tan2 in 0.0..50.0_f32,
+        sigma in single(0.01..2.0), tan2 in single(0.0..50.0),
     ) {
         if sigma <= core::f32::consts::FRAC_1_SQRT_2 {
             prop_assume!(facet::beckmann(tan2, sigma) > 1e-30);
@@ -289,7 +288,8 @@ proptest! {
 
     #[test]
     fn single_precision_gradient_is_the_double_precision_one(
-        k in 0.0..1.0_f32, n in 1.05..5.0_f32, sigma in 0.05..1.5_f32, s in 0.0..89.0_f32, v in 0.0..89.0_f32, phi in 0.0..360.0_f32,
+        k in single(0.0..1.0), n in single(1.05..5.0), sigma in single(0.05..1.5), s in single(0.0..89.0), v in single(0.0..89.0),
+        phi in single(0.0..360.0),
     ) {
         let single = Leaf::new(k, Surface::new(n, sigma).unwrap()).unwrap();
         let double = Leaf::new(f64::from(k), Surface::new(f64::from(n), f64::from(sigma)).unwrap()).unwrap();
