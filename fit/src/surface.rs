@@ -31,6 +31,12 @@ mod errors;
 #[cfg(feature = "std")]
 mod leaf;
 #[cfg(feature = "std")]
+mod options;
+#[cfg(feature = "std")]
+mod robust;
+#[cfg(feature = "std")]
+mod settle;
+#[cfg(feature = "std")]
 mod spectra;
 
 pub use model::{DiffuseKind, DirectionValue, DirectionalModel, FacetKind, LeafModel, NAMES, PARAMETERS};
@@ -41,8 +47,10 @@ pub use search::{Prior, ScanSize, SearchOptions, Treatment, Valley, Valleys, pol
 #[cfg(feature = "std")]
 pub use errors::{Errors, Knowledge};
 #[cfg(feature = "std")]
-pub(crate) use leaf::settle;
+pub use leaf::{SurfaceBand, SurfaceData, SurfaceFit, fit_surface};
 #[cfg(feature = "std")]
-pub use leaf::{SurfaceBand, SurfaceData, SurfaceFit, SurfaceOptions, fit_surface};
+pub use options::SurfaceOptions;
+#[cfg(feature = "std")]
+pub(crate) use settle::settle;
 #[cfg(feature = "std")]
 pub use spectra::Spectra;
