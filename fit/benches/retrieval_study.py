@@ -163,8 +163,14 @@ RECIPES = {
     "B": dict(wavelengths=FULL, n_struct=1.4, share=0.5, cov=1e-4 * np.eye(len(FULL))),
     "A": dict(wavelengths=FULL, n_struct=1.5, share=0.65, cov=covariance(FULL)),
     "R": dict(wavelengths=CUT, n_struct=1.5, share=2 / 3, cov=covariance(CUT, 0.01, 100.0, 0.005)),
-    "S": dict(wavelengths=CUT, n_struct=1.5, share=0.7, cov=covariance(CUT, 0.01, 100.0, 0.005), share_slope=0.1),
+    "S": dict(wavelengths=CUT, n_struct=1.5, share=0.7, cov=covariance(CUT, 0.01, 100.0, 0.005), share_slope=0.1, surface_sd=0.01),
 }
+
+
+def first_surface(wavelengths):
+    """The relative departure from its mean of ρ(λ) = 1 − t_av(40°, n(λ)), what PROSPECT's first surface reflects."""
+    rho = 1 - Interior(wavelengths, D).t_alpha
+    return rho / rho.mean() - 1
 
 
 def fit(y, wavelengths, n_struct, share, cov, names=D, additive=(), gains=(), sd_gain=0.2, shift_sd=None, start=None):
@@ -224,7 +230,9 @@ def fit(y, wavelengths, n_struct, share, cov, names=D, additive=(), gains=(), sd
 def run(leaves, recipe, views=0.5, shifted=0.0, **changes):
     """A recipe with changes; `shifted`: the instrument's wavelengths are off by so many nm."""
     recipe = dict(RECIPES[recipe], **changes)
-    slope = recipe.pop("share_slope", 0.0)
+    slope, surface_sd = recipe.pop("share_slope", 0.0), recipe.pop("surface_sd", 0.0)
+    if surface_sd:
+        recipe["additive"] = (*recipe.get("additive", ()), (first_surface(recipe["wavelengths"]), surface_sd))
     y = leaves.mean_of_darkest_views(recipe["wavelengths"] - shifted, views)
     found = fit(y, **recipe)
     if slope:  # C_m hardly depends on the share, so one more fit settles it
@@ -301,6 +309,14 @@ def constants(leaves):
             line(f"f {f:.3f} − {slope} ln(C_m/5 mg cm⁻²)", leaves, found)
             error[round(f, 3), slope] = found - leaves.true
     left_out(leaves, error, lambda r: r[0])
+    error = {}
+    for sd in (0.0, 0.005, 0.01, 0.02, 0.05):
+        found = run(leaves, "S", surface_sd=sd)["estimate"]
+        line(f"offset may follow the index by ± {sd}", leaves, found)
+        error[sd] = found - leaves.true
+    left_out(leaves, error, lambda r: (r / AIMS).mean())
+    for sd in (0.01, 0.02):
+        print(sd, "−", 0.0, over_species(leaves, lambda i, p=error[sd], q=error[0.0]: rmse(p[:, i]) - rmse(q[:, i])))
 
 
 def windows(leaves):
@@ -311,8 +327,7 @@ def windows(leaves):
         w = np.array([v for v in FULL if gap is None or not gap[0] <= v <= gap[1]])
         if name.startswith("1380"):
             w = w[(w < 1380) | (w > 1410)]
-        index = 1 - mean_transmissivity(40, Interior(w, D).n)
-        slope = ((index / index.mean() - 1, 0.01),)
+        slope = ((first_surface(w), 0.01),)
         for length in (30.0, 60.0, 100.0, 200.0):
             for nugget in (0.002, 0.005):
                 cov = covariance(w, 0.01, length, nugget)
@@ -335,8 +350,7 @@ def wavelength(leaves):
 
 def variants(leaves):
     w = CUT.astype(float)
-    index = mean_transmissivity(40, Interior(CUT, D).n)
-    slope = (1 - index) / (1 - index).mean() - 1
+    slope = first_surface(CUT)
     glow = np.exp(-0.5 * ((w - 740) / 21) ** 2) + 0.5 * np.exp(-0.5 * ((w - 685) / 9) ** 2)
     detectors = ((1.0 * (w > 1000), 0.03), (1.0 * (w > 1830), 0.03))
 

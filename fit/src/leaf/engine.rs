@@ -99,6 +99,7 @@ impl<'a> Cost<'a> {
         let mut whitenings = Vec::new();
         let mut whitening_of = Vec::new();
         let mut full = None;
+        let first_surface = model.prospect.view().t_alpha().iter().map(|t_alpha| 1.0 - t_alpha);
         for (direction, values) in measured.brf.chunks_exact(bands.max(1)).enumerate() {
             let gapless = values.iter().all(|y| !y.is_nan()) && measured.sd.is_none();
             if let (true, Some(shared)) = (gapless, full) {
@@ -110,7 +111,7 @@ impl<'a> Cost<'a> {
                 Some(sd) => sd.get(direction * bands + band).copied().unwrap_or(0.0),
                 None => 1.0,
             };
-            whitenings.push(Whitening::new(residuals, measured.wavelengths_nm, scale));
+            whitenings.push(Whitening::new(residuals, measured.wavelengths_nm, first_surface.clone(), scale));
             whitening_of.push(whitenings.len() - 1);
             if gapless {
                 full = Some(whitenings.len() - 1);
@@ -611,7 +612,7 @@ mod tests {
     #[test]
     fn the_gradient_is_that_of_differences_under_every_coupling_interior_and_facet() {
         let two = Interior::TwoLayer { upper_share: 0.65 };
-        let slow = ResidualModel { slow_sd: 0.01, length_nm: 100.0, white_sd: 0.005 };
+        let slow = ResidualModel { slow_sd: 0.01, length_nm: 100.0, white_sd: 0.005, surface_sd: 0.01 };
         let white = ResidualModel::white(1.0);
         check(Coupling::Bousquet, false, Interior::Plain, FacetKind::Beckmann, white);
         check(Coupling::Bousquet, false, two, FacetKind::Ggx, white);

@@ -160,7 +160,7 @@ impl LeafOutcome {
             },
             "residuals": {
                 "slow_sd": recipe.residuals.slow_sd, "length_nm": recipe.residuals.length_nm,
-                "white_sd": recipe.residuals.white_sd, "unit": "reflectance",
+                "white_sd": recipe.residuals.white_sd, "first_surface_sd": recipe.residuals.surface_sd, "unit": "reflectance",
             },
             "priors": priors,
             "held": {
