@@ -1,29 +1,13 @@
 //! DHRF_spec against values that share nothing with the fixed nodes, and the laws it obeys.
 
 mod common;
+#[path = "common/hemisphere.rs"]
+mod hemisphere;
 
 use common::Table;
+use hemisphere::{HalfMirror, illumination, integral_over_views, promise, relative, scattered};
 use leafbrdf_core::real::device::F32;
-use leafbrdf_core::{
-    Absorbing, Angle, Dielectric, Geometry, Grade, Illumination, Index, Normalization, Portable, Real, Surface,
-};
-
-/// F ≡ ½: half of a perfect mirror's DHRF, far from the bound 1 at which a result is cut.
-#[derive(Clone, Copy)]
-struct HalfMirror;
-
-impl<T: Real> Index<T> for HalfMirror {
-    fn fresnel(self, _: T) -> T {
-        T::HALF
-    }
-    fn fresnel_with_slope(self, _: T) -> (T, T) {
-        (T::HALF, T::ZERO)
-    }
-}
-
-fn illumination(theta_s_deg: f64) -> Illumination<f64> {
-    Illumination::new(Angle::from_degrees(theta_s_deg)).unwrap()
-}
+use leafbrdf_core::{Absorbing, Angle, Dielectric, Grade, Illumination, Normalization, Portable, Real, Surface};
 
 fn dhrf(n: f64, sigma: f64, theta_s_deg: f64, grade: Grade) -> f64 {
     illumination(theta_s_deg).dhrf(Dielectric::new(n).unwrap(), sigma, grade)
@@ -36,20 +20,6 @@ fn columns<const N: usize>(text: &str, names: [&str; N]) -> Vec<[f64; N]> {
     table.rows.iter().map(|row| places.map(|place| row[place])).collect()
 }
 
-fn relative(value: f64, reference: f64) -> f64 {
-    (value / reference - 1.0).abs()
-}
-
-/// The promised relative error of each grade on n ∈ [1.1, 5], σ ∈ [0.005, 1], θ_s ≤ 89° (`Grade` states the measured one).
-fn promise(grade: Grade) -> f64 {
-    match grade {
-        Grade::E4d => 2e-5,
-        Grade::E6 => 1e-6,
-        Grade::E8 => 1e-8,
-        _ => 2e-10,
-    }
-}
-
 /// The same up to 89.9° and σ = 2. Measured: 8.2e-5, 2.1e-6, 1.0e-8, 1e-10.
 fn outer_promise(grade: Grade) -> f64 {
     match grade {
@@ -58,21 +28,6 @@ fn outer_promise(grade: Grade) -> f64 {
         Grade::E8 => 2e-8,
         _ => 2e-10,
     }
-}
-
-/// A sequence that fills the unit interval evenly (Weyl): the same points on every machine.
-fn fill(i: usize, irrational: f64) -> f64 {
-    (i as f64 * irrational).fract()
-}
-
-/// θ_s (half of them beyond 60°), σ (half of them logarithmic) and n over the golden file's domain, rounded to `f32`.
-fn scattered(i: usize) -> (f32, f32, f32) {
-    let t = fill(i, 0.754_877_666_246_693);
-    let s = fill(i, 0.569_840_290_998_053);
-    let theta = if i.is_multiple_of(2) { 89.0 * t } else { 60.0 + 29.0 * t };
-    let sigma = if i.is_multiple_of(3) { 0.01 + 0.99 * s } else { 0.01 * 100.0_f64.powf(s) };
-    let n = 1.1 * (5.0 / 1.1_f64).powf(fill(i, 0.618_033_988_749_895));
-    (theta as f32, sigma as f32, n as f32)
 }
 
 #[test]
@@ -110,7 +65,7 @@ fn single_precision_keeps_2e_5_on_the_reference_grid() {
 #[test]
 fn single_precision_keeps_2e_5_everywhere_with_at_most_180_evaluations() {
     for i in 0..20_000 {
-        let (theta_s, sigma, n) = scattered(i);
+        let (theta_s, sigma, n) = scattered(i, 1.1);
         let error = single_precision_error(theta_s, sigma, n, Grade::E4d);
         assert!(error < 2e-5, "n={n} sigma={sigma} theta_s={theta_s}: {error:e}");
         let count = Illumination::new(Angle::from_degrees(theta_s)).unwrap().evaluations(sigma, Grade::E4d);
@@ -136,9 +91,9 @@ fn the_cheapest_grade_never_takes_more_than_180_evaluations() {
 fn a_mirror_of_facets_never_creates_energy() {
     // 2 × DHRF(F ≡ ½) is not cut at 1, so only the grade's own error may show
     for i in 0..4_000 {
-        let (theta_s, sigma, _) = scattered(i);
+        let (theta_s, sigma, _) = scattered(i, 1.1);
         for grade in Grade::ALL {
-            let mirror = 2.0 * illumination(theta_s.into()).dhrf(HalfMirror, sigma.into(), grade);
+            let mirror = 2.0 * illumination::<f64>(theta_s.into()).dhrf(HalfMirror, sigma.into(), grade);
             assert!(mirror <= 1.0 + promise(grade), "{grade:?} sigma={sigma} theta_s={theta_s}: {mirror}");
             assert!(mirror > 0.0);
         }
@@ -207,7 +162,7 @@ fn the_gradient_is_the_slope_of_the_value() {
     // Central differences with a step of 1 %: their own error is the third derivative's, 1e-4/6 times a factor of some
     // tens where F or the lobe is steep; the logarithmic derivatives themselves reach 10.
     for i in 0..300 {
-        let (theta_s, sigma, n) = scattered(i);
+        let (theta_s, sigma, n) = scattered(i, 1.1);
         let (theta_s, sigma, n) = (theta_s.into(), f64::from(sigma), f64::from(n));
         let gradient = illumination(theta_s).dhrf_with_gradient(Dielectric::new(n).unwrap(), sigma, Grade::E10);
         let h = 0.01 * (n - 1.0);
@@ -225,7 +180,7 @@ fn the_gradient_is_the_slope_of_the_value() {
 #[test]
 fn the_value_beside_the_gradient_is_the_value() {
     for i in 0..500 {
-        let (theta_s, sigma, n) = scattered(i);
+        let (theta_s, sigma, n) = scattered(i, 1.1);
         let illumination = Illumination::new(Angle::from_degrees(theta_s)).unwrap();
         for grade in Grade::ALL {
             let index = Dielectric::new(n).unwrap();
@@ -240,27 +195,11 @@ fn the_value_beside_the_gradient_is_the_value() {
 /// Its error is of second order in the step; 1e-4 is four times what 400 × 400 points leave at these roughnesses.
 #[test]
 fn it_is_the_integral_of_the_brdf_over_the_views() {
-    let steps = 400;
     for (n, sigma, theta_s) in
         [(1.4, 0.3, 0.0), (1.22, 0.5, 30.0), (1.56, 0.29, 45.0), (1.68, 0.46, 60.0), (3.0, 0.8, 75.0)]
     {
         let surface = Surface::new(n, sigma).unwrap().with_normalization(Normalization::CookTorrance);
-        let half_pi = core::f64::consts::FRAC_PI_2;
-        let mut sum = 0.0;
-        for i in 0..steps {
-            let theta_v = half_pi * (i as f64 + 0.5) / steps as f64;
-            for j in 0..steps {
-                let phi_v = 2.0 * half_pi * (j as f64 + 0.5) / steps as f64;
-                let geometry = Geometry::from_angles(
-                    Angle::from_degrees(theta_s),
-                    Angle::from_radians(theta_v),
-                    Angle::from_radians(phi_v),
-                );
-                sum += surface.brdf(&geometry.unwrap()) * theta_v.cos() * theta_v.sin();
-            }
-        }
-        // both halves of the azimuth
-        let integral = sum * 2.0 * (half_pi / steps as f64) * (2.0 * half_pi / steps as f64);
+        let integral = integral_over_views(&surface, theta_s);
         let error = relative(dhrf(n, sigma, theta_s, Grade::E10), integral);
         assert!(error < 1e-4, "n={n} sigma={sigma} theta_s={theta_s}: {error:e}");
     }
@@ -334,7 +273,7 @@ fn check_range<T: Real>(theta_s: f64, sigma: f64, grade: Grade) {
 #[test]
 fn portable_arithmetic_gives_the_same() {
     for i in 0..500 {
-        let (theta_s, sigma, n) = scattered(i);
+        let (theta_s, sigma, n) = scattered(i, 1.1);
         let (theta_s, sigma, n) = (f64::from(theta_s), f64::from(sigma), f64::from(n));
         let portable = Illumination::new(Angle::from_degrees(Portable(theta_s))).unwrap();
         let value = portable.dhrf(Dielectric::new(Portable(n)).unwrap(), Portable(sigma), Grade::E10);
@@ -347,7 +286,7 @@ fn portable_arithmetic_gives_the_same() {
 #[test]
 fn a_device_prepares_the_same_illumination_from_degrees() {
     for i in 0..5_000 {
-        let (theta_s, sigma, n) = scattered(i);
+        let (theta_s, sigma, n) = scattered(i, 1.1);
         let source = Illumination::from_degrees(F32(theta_s)).unwrap();
         let value = source.dhrf(Dielectric::new(F32(n)).unwrap(), F32(sigma), Grade::E4d);
         let exact = dhrf(n.into(), sigma.into(), theta_s.into(), Grade::E10);

@@ -1,45 +1,15 @@
 //! DHRF_spec of the GGX–Smith surface against values that share nothing with its nodes, and the laws it obeys.
 
 mod common;
+#[path = "common/hemisphere.rs"]
+mod hemisphere;
 
 use common::Table;
-use leafbrdf_core::{
-    Absorbing, Angle, Dielectric, Geometry, Grade, Illumination, Index, Normalization, Portable, Real, Surface,
-};
-
-/// F ≡ ½: half of a perfect mirror's DHRF, far from the bound 1 at which a result is cut.
-#[derive(Clone, Copy)]
-struct HalfMirror;
-
-impl<T: Real> Index<T> for HalfMirror {
-    fn fresnel(self, _: T) -> T {
-        T::HALF
-    }
-    fn fresnel_with_slope(self, _: T) -> (T, T) {
-        (T::HALF, T::ZERO)
-    }
-}
-
-fn illumination<T: Real>(theta_s_deg: f64) -> Illumination<T> {
-    Illumination::new(Angle::from_degrees(T::lit(theta_s_deg))).unwrap()
-}
+use hemisphere::{HalfMirror, illumination, integral_over_views, promise, relative, scattered};
+use leafbrdf_core::{Absorbing, Angle, Dielectric, Grade, Illumination, Index, Normalization, Portable, Real, Surface};
 
 fn dhrf(n: f64, sigma: f64, theta_s_deg: f64, grade: Grade) -> f64 {
     illumination(theta_s_deg).dhrf_ggx(Dielectric::new(n).unwrap(), sigma, grade)
-}
-
-fn relative(value: f64, reference: f64) -> f64 {
-    (value / reference - 1.0).abs()
-}
-
-/// The promised relative error of each grade on n ∈ [1.05, 5], σ ∈ [0.01, 1], θ_s ≤ 89° (`Grade` states the measured one).
-fn promise(grade: Grade) -> f64 {
-    match grade {
-        Grade::E4d => 2e-5,
-        Grade::E6 => 1e-6,
-        Grade::E8 => 1e-8,
-        _ => 2e-10,
-    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -64,16 +34,6 @@ fn reference() -> Vec<Row> {
         Row { index, sigma, theta_s, value, mirror, d_n, d_sigma }
     })
     .collect()
-}
-
-/// θ_s (half of them beyond 60°), σ (two thirds of them logarithmic) and n, by Weyl's sequence, rounded to `f32`.
-fn scattered(i: usize) -> (f32, f32, f32) {
-    let fill = |irrational: f64| (i as f64 * irrational).fract();
-    let (t, s) = (fill(0.754_877_666_246_693), fill(0.569_840_290_998_053));
-    let theta = if i.is_multiple_of(2) { 89.0 * t } else { 60.0 + 29.0 * t };
-    let sigma = if i.is_multiple_of(3) { 0.01 + 0.99 * s } else { 0.01 * 100.0_f64.powf(s) };
-    let n = 1.05 * (5.0 / 1.05_f64).powf(fill(0.618_033_988_749_895));
-    (theta as f32, sigma as f32, n as f32)
 }
 
 #[test]
@@ -112,7 +72,7 @@ fn both_ggx_derivatives_agree_with_an_independent_integral() {
 #[test]
 fn ggx_in_single_precision_keeps_2e_5_with_at_most_180_evaluations() {
     for i in 0..10_000 {
-        let (theta_s, sigma, n) = scattered(i);
+        let (theta_s, sigma, n) = scattered(i, 1.05);
         let source = Illumination::new(Angle::from_degrees(theta_s)).unwrap();
         let value = source.dhrf_ggx(Dielectric::new(n).unwrap(), sigma, Grade::E4d);
         let error = relative(value.into(), dhrf(n.into(), sigma.into(), theta_s.into(), Grade::E10));
@@ -126,7 +86,7 @@ fn ggx_in_single_precision_keeps_2e_5_with_at_most_180_evaluations() {
 fn ggx_facets_never_create_energy() {
     // 2 × DHRF(F ≡ ½) is not cut at 1, so only the grade's own error may show
     for i in 0..4_000 {
-        let (theta_s, sigma, _) = scattered(i);
+        let (theta_s, sigma, _) = scattered(i, 1.05);
         for grade in Grade::ALL {
             let mirror = 2.0 * illumination::<f64>(theta_s.into()).dhrf_ggx(HalfMirror, sigma.into(), grade);
             assert!(mirror <= 1.0 + promise(grade), "{grade:?} sigma={sigma} theta_s={theta_s}: {mirror}");
@@ -149,24 +109,9 @@ fn single_scattering_loses_8_percent_at_sigma_0_25_and_31_percent_at_0_5() {
 /// Eq. 2 as it stands: the BRDF over all views, a midpoint rule that knows nothing of facet slopes.
 #[test]
 fn ggx_dhrf_is_the_integral_of_its_brdf_over_the_views() {
-    let steps = 400;
     for (n, sigma, theta_s) in [(1.5, 0.3, 0.0), (1.45, 0.5, 30.0), (1.56, 0.29, 45.0), (1.68, 0.46, 60.0)] {
         let surface = Surface::ggx(n, sigma).unwrap();
-        let half_pi = core::f64::consts::FRAC_PI_2;
-        let mut sum = 0.0;
-        for i in 0..steps {
-            let theta_v = half_pi * (i as f64 + 0.5) / steps as f64;
-            for j in 0..steps {
-                let phi_v = 2.0 * half_pi * (j as f64 + 0.5) / steps as f64;
-                let geometry = Geometry::from_angles(
-                    Angle::from_degrees(theta_s),
-                    Angle::from_radians(theta_v),
-                    Angle::from_radians(phi_v),
-                );
-                sum += surface.brdf(&geometry.unwrap()) * theta_v.cos() * theta_v.sin();
-            }
-        }
-        let integral = sum * 2.0 * (half_pi / steps as f64) * (2.0 * half_pi / steps as f64);
+        let integral = integral_over_views(&surface, theta_s);
         let value = surface.dhrf(&illumination(theta_s), Grade::E10);
         // the midpoint rule's error is of second order in the step; it leaves at most 3e-5 here
         assert!(relative(value, integral) < 1e-4, "n={n} sigma={sigma} theta_s={theta_s}: {value} {integral}");
@@ -234,7 +179,7 @@ fn check_range<T: Real>(theta_s: f64, sigma: f64, grade: Grade) {
 #[test]
 fn portable_arithmetic_gives_the_same_ggx_dhrf() {
     for i in 0..300 {
-        let (theta_s, sigma, n) = scattered(i);
+        let (theta_s, sigma, n) = scattered(i, 1.05);
         let (theta_s, sigma, n) = (f64::from(theta_s), f64::from(sigma), f64::from(n));
         let index = Dielectric::new(Portable(n)).unwrap();
         let value = illumination::<Portable<f64>>(theta_s).dhrf_ggx(index, Portable(sigma), Grade::E10);
