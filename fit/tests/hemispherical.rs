@@ -1,50 +1,16 @@
 //! PROSPECT inverted: what comes back from spectra that the model made, and what is said where it cannot come back.
 #![cfg(feature = "std")]
 
+#[path = "common/random.rs"]
+mod random;
+
 use leafbrdf_fit::hemispherical::{
     self, Free, HemisphericalError, HemisphericalOptions, HemisphericalProblem, LeafFit, LeafFitOptions, Measured,
     Spectra, default_free, fit_leaf, n_prior, workspace_len,
 };
 use leafbrdf_fit::{AtBound, Identifiability, Interval};
 use leafbrdf_prospect::{LeafParams, Parameter, Prospect, Version, table};
-
-/// SplitMix64: a fixed sequence of numbers.
-struct Random(u64);
-
-impl Random {
-    fn uniform(&mut self, from: f64, to: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
-        from + (to - from) * (z >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        let (u, v) = (1.0 - self.uniform(0.0, 1.0), self.uniform(0.0, 1.0));
-        (-2.0 * u.ln()).sqrt() * (2.0 * std::f64::consts::PI * v).cos()
-    }
-
-    fn leaf(&mut self, version: Version) -> LeafParams<f64> {
-        let mut leaf = LeafParams::with_n_struct(self.uniform(1.0, 3.0));
-        for parameter in default_free(version).into_iter().skip(1) {
-            let (from, to) = match parameter {
-                Parameter::NStruct => (1.0, 3.0),
-                Parameter::Cab => (2.0, 90.0),
-                Parameter::Car => (1.0, 25.0),
-                Parameter::Cant => (0.0, 15.0),
-                Parameter::Cbrown => (0.0, 1.0),
-                Parameter::Cw => (0.002, 0.05),
-                Parameter::Cm => (0.001, 0.02),
-                Parameter::Prot => (0.0002, 0.003),
-                Parameter::Cbc => (0.0008, 0.018),
-            };
-            leaf.set(parameter, self.uniform(from, to));
-        }
-        leaf
-    }
-}
+use random::Random;
 
 /// R and T of a leaf.
 fn spectra(model: &Prospect<'_, f64>, leaf: &LeafParams<f64>) -> (Vec<f64>, Vec<f64>) {
