@@ -18,10 +18,23 @@ use cmd::{Command, Failure};
 struct Arguments {
     #[command(subcommand)]
     command: Command,
+    /// Threads; as many as the machine has cores without it. The results do not depend on it
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+impl Arguments {
+    fn run(self) -> Result<(), Failure> {
+        if let Some(threads) = self.threads {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads));
+            pool.build_global().map_err(|error| Failure::Failed(format!("--threads: {error}")))?;
+        }
+        self.command.run()
+    }
 }
 
 fn main() -> ExitCode {
-    let failure = match Arguments::parse().command.run() {
+    let failure = match Arguments::parse().run() {
         Ok(()) => return ExitCode::SUCCESS,
         Err(failure) => failure,
     };

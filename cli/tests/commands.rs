@@ -361,6 +361,17 @@ fn every_help_text_has_an_example() {
 }
 
 #[test]
+fn every_command_takes_a_number_of_threads() {
+    let one = ["brdf", "--n", "1.5", "--sigma", "0.3", "--theta-s", "10,40", "--theta-v", "20", "--phi-v", "180"];
+    let alone = leafbrdf(&one).stdout;
+    for threads in ["1", "2"] {
+        assert_eq!(leafbrdf(&[&one[..], &["--threads", threads]].concat()).stdout, alone);
+        assert_eq!(leafbrdf(&[&["--threads", threads][..], &one[..]].concat()).stdout, alone);
+    }
+    fails(&[&one[..], &["--threads", "0"]].concat(), "", 2, &["1..=1024"]);
+}
+
+#[test]
 fn version_and_completions_are_printed() {
     let version = String::from_utf8(leafbrdf(&["--version"]).stdout).unwrap();
     assert_eq!(version.trim(), format!("leafbrdf {}", env!("CARGO_PKG_VERSION")));

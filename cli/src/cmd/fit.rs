@@ -102,9 +102,6 @@ pub struct Arguments {
     /// Draw the figures too, as `leafbrdf plot` does, into the folder figures beside each leaf's files
     #[arg(long)]
     plots: bool,
-    /// Threads; as many as the machine has cores without it. The results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
     #[command(flatten)]
     surface: surface::Options,
     #[command(flatten)]

@@ -93,10 +93,6 @@ pub fn each<D: Sync + Send, O>(
     write: impl Fn(O, &Path, &D, &str) -> io::Result<Told> + Sync,
 ) -> Result<(), Failure> {
     fs::create_dir_all(&arguments.output).map_err(|error| Failure::writing(Some(&arguments.output), &error))?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(usize::from(arguments.threads.unwrap_or(0)))
-        .build()
-        .map_err(|error| Failure::Failed(format!("threads: {error}")))?;
     let bar = progress_bar(if model.bands.is_some() { "bands" } else { "leaves" });
     let leaves = read();
     let several = leaves.len() > 1;
@@ -114,16 +110,14 @@ pub fn each<D: Sync + Send, O>(
             .and_then(|()| write(outcome, &folder, data, &leaf.file))
             .map_err(|error| format!("{}: cannot be written: {error}", folder.display()))
     };
-    let done: Vec<Result<Told, String>> = pool.install(|| {
-        leaves
-            .par_iter()
-            .map(|leaf| {
-                let result = one(leaf);
-                bar.inc(u64::from(model.bands.is_none()));
-                result
-            })
-            .collect()
-    });
+    let done: Vec<Result<Told, String>> = leaves
+        .par_iter()
+        .map(|leaf| {
+            let result = one(leaf);
+            bar.inc(u64::from(model.bands.is_none()));
+            result
+        })
+        .collect();
     bar.finish_and_clear();
 
     let mut errors = io::stderr().lock();
