@@ -90,6 +90,14 @@ impl From<WriteError> for Failure {
     }
 }
 
+/// Refuses `-` as a folder: standard output holds one file, and a folder of that name helps nobody.
+fn folder(path: &std::path::Path) -> Result<(), Failure> {
+    if path == std::path::Path::new("-") {
+        return Err(Failure::Usage("--output -: several files are written, expected the name of a folder".to_string()));
+    }
+    Ok(())
+}
+
 impl Failure {
     /// A table or file that could not be written.
     pub fn writing(output: Option<&std::path::Path>, error: &io::Error) -> Self {

@@ -243,6 +243,18 @@ fn too_few_values_in_a_band_are_said_and_the_other_bands_are_done() {
 }
 
 #[test]
+fn a_folder_named_like_standard_output_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("leaf.csv"), wide(Normalization::Bousquet2005, "brf")).unwrap();
+    for call in [&["fit", "leaf.csv", "--model", "bands", "-o", "-"][..], &["demo", "-o", "-"]] {
+        let output = run(folder.path(), call);
+        assert_eq!(output.status.code(), Some(2), "{call:?}");
+        assert!(stderr(&output).contains("name of a folder"), "{}", stderr(&output));
+        assert!(!folder.path().join("-").exists());
+    }
+}
+
+#[test]
 fn a_file_read_with_the_wrong_azimuth_is_warned_of() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("leaf.csv"), wide(Normalization::Bousquet2005, "brf")).unwrap();

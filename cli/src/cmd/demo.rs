@@ -27,6 +27,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folder = &arguments.output;
+    super::folder(folder)?;
     let study = demo::run(folder).map_err(|error: DemoError| Failure::Failed(error.to_string()))?;
     let mut out = io::stdout().lock();
     write!(out, "{study}").and_then(|()| out.flush()).map_err(|error| Failure::writing(None, &error))?;

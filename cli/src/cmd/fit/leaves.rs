@@ -92,6 +92,7 @@ pub fn each<D: Sync + Send, O>(
     fit: impl Fn(&D, &ProgressBar) -> Result<O, String> + Sync,
     write: impl Fn(O, &Path, &D, &str) -> io::Result<Told> + Sync,
 ) -> Result<(), Failure> {
+    super::super::folder(&arguments.output)?;
     fs::create_dir_all(&arguments.output).map_err(|error| Failure::writing(Some(&arguments.output), &error))?;
     let bar = progress_bar(if model.bands.is_some() { "bands" } else { "leaves" });
     let leaves = read();
