@@ -243,6 +243,18 @@ fn too_few_values_in_a_band_are_said_and_the_other_bands_are_done() {
 }
 
 #[test]
+fn a_leaf_of_which_no_band_can_be_fitted_fails_with_the_remedy() {
+    let folder = tempfile::tempdir().unwrap();
+    let two = "# quantity: brf\ntheta_s_deg,30,30\ntheta_v_deg,0,30\nphi_v_deg,0,180\n550,0.1,0.2\n600,0.1,0.2\n";
+    fs::write(folder.path().join("two.csv"), two).unwrap();
+    let output = run(folder.path(), &["fit", "two.csv", "--model", "bands", "-o", "out"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stderr(&output).contains("no wavelength has the 3 values") && stderr(&output).contains("--hold n=1.5"));
+    assert_eq!(rows(&folder.path().join("out/leaves.csv"))[0]["status"], "failed");
+    assert!(!folder.path().join("out/bands.csv").exists());
+}
+
+#[test]
 fn a_folder_named_like_standard_output_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("leaf.csv"), wide(Normalization::Bousquet2005, "brf")).unwrap();

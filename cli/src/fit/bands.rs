@@ -35,6 +35,11 @@ pub fn fit_bands(
 ) -> Result<BandsOutcome, FitFailure> {
     let data = LeafData { geometries: &selected.geometries, brdf: &selected.brdf, sd: selected.sd.as_deref() };
     let bands = leafbrdf_fit::fit_bands(&data, options, progress)?;
+    if bands.iter().all(Option::is_none) {
+        let why = "no wavelength has the 3 values that k_l, n and sigma take at least. Measure more directions, or hold parameters with \
+                   --model surface, as with --hold n=1.5";
+        return Err(FitFailure(why.to_string()));
+    }
     let exact = |fit: &BandFit<f64>| fit.identifiability.contains(&Identifiability::NoDegreesOfFreedom);
     let mut fits = bands.iter().flatten().peekable();
     if fits.peek().is_some() && fits.all(exact) {
