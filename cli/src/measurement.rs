@@ -211,6 +211,27 @@ impl Measurement {
         })
     }
 
+    /// What looks wrong with the file as a whole: its azimuth convention, the scale of its values.
+    pub fn warnings(&self) -> Vec<String> {
+        self.scale_warning().into_iter().chain(self.azimuth_warning()).collect()
+    }
+
+    /// A sentence where the values are too large for a reflectance: per cent, counts, or numbers scaled to integers.
+    ///
+    /// A white leaf that scatters evenly has BRF 1, and a lobe exceeds that in the few directions that see it: the warning is given
+    /// where half of all values lie above a BRF of 1.5.
+    pub fn scale_warning(&self) -> Option<String> {
+        let mut brdf: Vec<f64> = self.brdf().into_iter().filter(|value| !value.is_nan()).collect();
+        brdf.sort_by(f64::total_cmp);
+        let middle = PI * brdf.get(brdf.len() / 2)?;
+        (middle > 1.5).then(|| {
+            format!(
+                "half of the values lie above a BRF of {middle:.3}, and a white surface has 1: are they per cent, or scaled? \
+                 BRF is expected as a fraction, BRDF in sr^-1"
+            )
+        })
+    }
+
     /// Mean over the bands of the values of each direction; NaN where there is none.
     fn means(&self) -> Vec<f64> {
         let mut sums = vec![(0.0, 0.0); self.directions.len()];

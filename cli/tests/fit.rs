@@ -267,6 +267,27 @@ fn a_folder_named_like_standard_output_is_refused() {
 }
 
 #[test]
+fn values_in_per_cent_are_warned_of_by_every_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let brf = wide(Normalization::Bousquet2005, "brf");
+    let percent = |line: &str| {
+        let mut cells = line.split(',');
+        let first = cells.next().unwrap().to_string();
+        let values = cells.map(|cell| (100.0 * cell.parse::<f64>().unwrap()).to_string());
+        std::iter::once(first).chain(values).collect::<Vec<_>>().join(",")
+    };
+    let numbers = |line: &str| line.starts_with(|c: char| c.is_ascii_digit());
+    let lines = brf.lines().map(|line| if numbers(line) { percent(line) } else { line.to_string() });
+    fs::write(folder.path().join("percent.csv"), lines.collect::<Vec<_>>().join("\n")).unwrap();
+    fs::write(folder.path().join("leaf.csv"), brf).unwrap();
+    for model in ["bands", "surface", "leaf"] {
+        let fit = |file: &str| stderr(&run(folder.path(), &["fit", file, "--model", model, "-o", "out"]));
+        assert!(fit("percent.csv").contains("are they per cent"), "{model}");
+        assert!(!fit("leaf.csv").contains("per cent"), "{model}");
+    }
+}
+
+#[test]
 fn a_file_read_with_the_wrong_azimuth_is_warned_of() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("leaf.csv"), wide(Normalization::Bousquet2005, "brf")).unwrap();

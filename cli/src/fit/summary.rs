@@ -177,7 +177,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 /// Sentences on what the numbers cannot be trusted for.
 fn warnings(leaf: &Measurement, outcome: &BandsOutcome, fits: &[(f64, &BandFit<f64>)]) -> Vec<String> {
-    let mut warnings: Vec<String> = leaf.azimuth_warning().into_iter().collect();
+    let mut warnings = leaf.warnings();
     let of = |count: usize| format!("{count} of {} bands", outcome.bands.len());
     let skipped = outcome.bands.len() - fits.len();
     if skipped > 0 {

@@ -217,7 +217,7 @@ impl LeafOutcome {
 
     /// Sentences on what the numbers cannot be trusted for.
     pub(super) fn warn(&self, leaf: &Measurement) -> Vec<String> {
-        let mut warnings: Vec<String> = leaf.azimuth_warning().into_iter().collect();
+        let mut warnings: Vec<String> = leaf.warnings();
         let fit = &self.fit;
         let names = |of: &dyn Fn(usize) -> bool| {
             let those = (0..NAMES.len()).filter(|&i| of(i));

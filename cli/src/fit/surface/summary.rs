@@ -145,7 +145,7 @@ impl SurfaceOutcome {
 
     /// Sentences on what the numbers cannot be trusted for.
     pub(super) fn warn(&self, leaf: &Measurement) -> Vec<String> {
-        let mut warnings: Vec<String> = leaf.azimuth_warning().into_iter().collect();
+        let mut warnings: Vec<String> = leaf.warnings();
         let (fit, errors) = (&self.fit, &self.fit.errors);
         let bands = fit.bands.len();
         let names = |of: &dyn Fn(usize) -> bool| {
