@@ -23,6 +23,9 @@ impl Study {
     fn new(leaves: &[&str], fit: &[&str]) -> Self {
         let study = Study { folder: tempfile::tempdir().unwrap() };
         let mut arguments = vec!["fit".to_string()];
+        if leaves.is_empty() {
+            return study;
+        }
         for leaf in leaves {
             let file = study.measurement(leaf);
             succeed(&["simulate", "--leaf", leaf, "--seed", "1", "--wavelengths", "480:880:50", "-o", &file]);
@@ -101,6 +104,23 @@ fn each_map_has_a_dot_for_every_direction() {
     // two wavelengths × measured and modelled × 98; four sources × the same
     assert_eq!(dots("hemisphere-wavelengths"), 2 * 2 * 98);
     assert_eq!(dots("hemisphere-sources"), 4 * 2 * 98);
+}
+
+#[test]
+fn directions_of_one_plane_show_their_values_and_what_lies_below_a_tilted_leafs_horizon_stays_empty() {
+    let study = Study::new(&[], &[]);
+    let plane = study.measurement("plane");
+    let views = ["--theta-s", "40", "--theta-v", "0:60:10", "--phi-v", "180", "--wavelengths", "500:800:50"];
+    succeed(&[&["simulate", "--leaf", "beech", "--seed", "1", "--tilt", "6,0", "-o", &plane][..], &views].concat());
+    succeed(&["fit", &plane, "--model", "surface", "--tilt", "-o", &study.fit()]);
+    succeed(&["plot", &study.fit(), "--svg", "--wavelengths", "500,700"]);
+    let figures = svgs(&study.at("fit/figures"));
+    let (_, svg) = figures.iter().find(|(name, _)| name == "hemisphere-wavelengths").unwrap();
+    let dots: Vec<&str> = svg.split('<').filter(|tag| tag.contains("class=\"direction\"")).collect();
+    assert_eq!(dots.len(), 2 * 2 * 7);
+    let coloured = |tag: &&&str| tag.contains("r=\"5.5\"") && !tag.contains("#ffffff");
+    assert_eq!(dots.iter().filter(coloured).count(), 2 * 7, "the measured values of both wavelengths");
+    assert!(svg.contains("coloured dots"));
 }
 
 #[test]

@@ -110,7 +110,8 @@ pub fn figures_of_leaf(
     }
     if let Some(table) = results.dhrf.as_ref().filter(|_| options.wants("dhrf")) {
         let title = format!("{shown}: where the reflected light comes from");
-        let note = format!("DHRF = k_L + DHRF_{{spec}}(θ_s), Eqs 12–14; {}", convention(results));
+        // with a bowl the diffuse part is not k_L alone
+        let note = format!("DHRF = diffuse part + DHRF_{{spec}}(θ_s), Eqs 12–14; {}", convention(results));
         let caption =
             "Diffuse and specular DHRF for each source (as Fig. 6), and the share that never entered the leaf";
         made.add(leaf, "dhrf", caption.to_string(), dhrf::dhrf(&format!("{leaf}-dhrf"), &title, &note, table));

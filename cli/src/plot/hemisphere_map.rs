@@ -49,6 +49,8 @@ pub struct Column<'a> {
 /// A column's maps on the grid.
 struct Maps {
     hull: String,
+    /// Do the directions enclose an area? Those of one plane do not: their dots carry the values.
+    encloses: bool,
     grids: Vec<(&'static str, Grid)>,
     greatest: f64,
     middle: f64,
@@ -77,7 +79,7 @@ pub fn hemisphere_map(prefix: &str, title: &str, note: &str, columns: &[Column<'
                 &mut svg,
                 centre,
                 column,
-                (&maps.hull, row > 0),
+                (&maps.hull, row > 0, maps.encloses),
                 grid,
                 &scale,
                 [row == 0 && place == 0, row == 0 && place + 1 == drawn.len()],
@@ -90,6 +92,8 @@ pub fn hemisphere_map(prefix: &str, title: &str, note: &str, columns: &[Column<'
     }
     let bar = [LEFT + PITCH_X * (drawn.len() - 1) as f64 + RADIUS + 92.0, TOP - RADIUS];
     scale.bar(&mut svg, bar, PITCH_Y * (rows - 1) as f64 + 2.0 * RADIUS);
+    let flat = drawn.iter().any(|(_, maps)| !maps.encloses);
+    let note = if flat { "equal-area disc: middle θ_v = 0°, rim 90°; coloured dots: measured values" } else { note };
     legend(&mut svg, [LEFT - RADIUS, height - 40.0], note, drawn.iter().any(|(c, _)| c.dots.iter().any(|d| !d.fitted)));
     Some(svg.finish())
 }
@@ -134,12 +138,17 @@ fn maps(column: &Column<'_>) -> Option<Maps> {
     sorted.sort_by(f64::total_cmp);
     let middle = sorted[sorted.len() / 2];
     let corners = mesh.hull().iter().map(|corner| place(*corner, [0.0, 0.0]));
+    let ring: Vec<[f64; 2]> = corners.clone().collect();
+    let sides = ring.iter().zip(ring.iter().cycle().skip(1));
+    let area: f64 = sides.map(|([x, y], [next_x, next_y])| 0.5 * (x * next_y - next_x * y)).sum();
+    // a square pixel: less shows no colour
+    let encloses = area.abs() > 1.0;
     let mut hull = String::new();
     for [x, y] in corners {
         hull.push_str(&format!("{}{} {}", if hull.is_empty() { 'M' } else { 'L' }, number(x), number(y)));
     }
     hull.push('Z');
-    Some(Maps { hull, grids, greatest, middle })
+    Some(Maps { hull, encloses, grids, greatest, middle })
 }
 
 /// From BRDF to a shade.
@@ -157,6 +166,12 @@ impl Scale {
     fn part(&self, value: f64) -> f64 {
         let part = value / self.end;
         if self.square_root { part.max(0.0).sqrt() } else { part }
+    }
+
+    /// The shade of a value.
+    fn shade(&self, value: f64) -> usize {
+        let shade = (self.part(value) * SHADES as f64).floor().max(0.0) as usize;
+        shade.min(SHADES - 1)
     }
 
     fn bar(&self, svg: &mut Svg, [left, top]: [f64; 2], height: f64) {
@@ -203,7 +218,7 @@ fn map(
     svg: &mut Svg,
     centre: [f64; 2],
     column: &Column<'_>,
-    (hull, whole): (&str, bool),
+    (hull, whole, encloses): (&str, bool, bool),
     grid: &Grid,
     scale: &Scale,
     [first, last]: [bool; 2],
@@ -215,7 +230,8 @@ fn map(
     let rim = rim();
     let domain = if whole { &rim } else { hull };
     svg.begin_clip(domain);
-    svg.fill(domain, &shade_hex(0), 1.0);
+    // what a tilt puts below the leaf's horizon has no value, and keeps the ground's colour
+    svg.fill(&path(&grid.at_least(f64::MIN, at)), &shade_hex(0), 1.0);
     for shade in 1..SHADES {
         let level = scale.value(shade as f64 / SHADES as f64);
         svg.fill(&path(&grid.at_least(level, at)), &shade_hex(shade), 1.0);
@@ -234,7 +250,12 @@ fn map(
     svg.circle([0.0, 0.0], RADIUS, "none", Some(HAIR), "");
     for dot in &column.dots {
         let at = place(disc(dot.theta_v_deg, dot.phi_v_deg), [0.0, 0.0]);
-        direction_dot(svg, at, dot.fitted && dot.brdf.is_finite(), "direction");
+        if whole || encloses || !dot.brdf.is_finite() {
+            direction_dot(svg, at, dot.fitted && dot.brdf.is_finite(), "direction");
+        } else {
+            let rim = Stroke { colour: "#16181c", width: 0.8, dash: "" };
+            svg.circle(at, 5.5, &shade_hex(scale.shade(dot.brdf)), Some(rim), "direction");
+        }
     }
     star(svg, place(disc(column.theta_s_deg, 0.0), [0.0, 0.0]));
     svg.end();
@@ -308,11 +329,15 @@ fn legend(svg: &mut Svg, [x, y]: [f64; 2], note: &str, open: bool) {
     let small = TextStyle { size: SMALL_PX, ..TextStyle::default() };
     star(svg, [x + 8.0, y - 5.0]);
     svg.text([x + 24.0, y], "source", small);
+    // on a shade of the maps, as there: on paper, a white disc and a ring look alike
+    let ground = |svg: &mut Svg, x: f64| svg.rect([x - 8.0, y - 12.0, 16.0, 14.0], &shade_hex(SHADES / 3), "");
+    ground(svg, x + 100.0);
     direction_dot(svg, [x + 100.0, y - 5.0], true, "key");
-    svg.text([x + 110.0, y], "direction fitted", small);
+    svg.text([x + 114.0, y], "direction fitted", small);
     if open {
+        ground(svg, x + 250.0);
         direction_dot(svg, [x + 250.0, y - 5.0], false, "key");
-        svg.text([x + 260.0, y], "measured, not fitted", small);
+        svg.text([x + 264.0, y], "measured, not fitted", small);
     }
     svg.text([x, y + TEXT_PX + 7.0], note, small);
 }
