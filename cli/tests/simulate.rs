@@ -278,6 +278,18 @@ fn the_truth_is_written_for_comparison() {
 }
 
 #[test]
+fn an_option_that_would_be_ignored_or_is_in_another_unit_is_refused() {
+    for (options, parts) in [
+        (&["--p1", "0.2,0"][..], "--diffuse p1"),
+        (&["--noise-relative", "-1"], "standard deviations ≥ 0"),
+        (&["--wavelengths", "0.5:0.9:0.1"], "µm"),
+        (&["--cw", "10"], "did you mean 10 mg cm⁻²"),
+    ] {
+        refused(&[&["--leaf", "beech"][..], options].concat(), &[parts]);
+    }
+}
+
+#[test]
 fn what_cannot_be_is_refused_with_its_name_and_what_is_doubtful_is_said() {
     refused(&["--n", "1.5"], &["--sigma", "--n-struct"]);
     refused(&["--leaf", "beech", "--n", "0.5"], &["n"]);

@@ -52,6 +52,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         (_, true) => vec![Kind::Png],
         _ => PlotOptions::all_kinds(),
     };
+    let List(wavelengths) = &arguments.wavelengths;
+    if let Some(nm) = wavelengths.iter().find(|nm| !(**nm >= 100.0)) {
+        return Err(Failure::Usage(format!("--wavelengths {nm}: expected wavelengths in nm, such as 550,670,780")));
+    }
     let options = PlotOptions {
         wavelengths_nm: arguments.wavelengths.0.clone(),
         kinds,

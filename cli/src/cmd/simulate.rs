@@ -60,9 +60,9 @@ pub struct Arguments {
     /// Diffuse term: k_L/π, or with a bowl
     #[arg(long, value_enum, default_value = "lambert", help_heading = "Interior")]
     diffuse: DiffuseName,
-    /// Depth of the bowl and its lean away from the source, both −1 to 1
-    #[arg(long, value_name = "A,B", default_value = "0.15,0", allow_hyphen_values = true, help_heading = "Interior")]
-    p1: Pair,
+    /// Depth of the bowl and its lean away from the source, both −1 to 1, for --diffuse p1 [default: 0.15,0]
+    #[arg(long, value_name = "A,B", allow_hyphen_values = true, help_heading = "Interior")]
+    p1: Option<Pair>,
     /// N, number of plates, 1 to 10
     #[arg(
         long,
@@ -138,10 +138,10 @@ pub struct Arguments {
     #[arg(long, value_name = "DEG", num_args = 0..=1, default_missing_value = "70", help_heading = "Measurement")]
     loss_beyond: Option<f64>,
     /// Standard deviation of the noise as a share of the value [default: 0, or 0.01 with --seed alone]
-    #[arg(long, value_name = "SHARE", help_heading = "Noise")]
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true, help_heading = "Noise")]
     noise_relative: Option<f64>,
     /// Standard deviation of the noise that does not depend on the value, sr⁻¹ [default: 0, or 0.003 with --seed alone]
-    #[arg(long, value_name = "SR-1", help_heading = "Noise")]
+    #[arg(long, value_name = "SR-1", allow_negative_numbers = true, help_heading = "Noise")]
     noise_absolute: Option<f64>,
     /// Seed of the noise; without it and without a size of noise there is none [default: 2005]
     #[arg(long, value_name = "SEED", help_heading = "Noise")]
@@ -233,6 +233,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !wavelengths_nm.is_sorted_by(|a, b| a < b) {
         return Err(Failure::Usage("--wavelengths: expected rising wavelengths, each once".to_string()));
     }
+    if let Some(nm) = wavelengths_nm.iter().find(|nm| **nm > 0.0 && **nm < 100.0) {
+        return Err(Failure::Usage(format!(
+            "--wavelengths: {nm} looks like µm: wavelengths are in nm, such as 480:879"
+        )));
+    }
     let leaf = model.at(wavelengths_nm).map_err(usage)?;
 
     let instrument = instrument(arguments)?;
@@ -297,9 +302,12 @@ fn model(arguments: &Arguments, preset: Option<&PresetLeaf>) -> Result<LeafModel
         interior.set(parameter, value.unwrap_or(interior.get(parameter)));
     }
     let diffuse = match arguments.diffuse {
+        DiffuseName::Lambert if arguments.p1.is_some() => {
+            return Err(Failure::Usage("--p1 is no part of --diffuse lambert: add --diffuse p1".to_string()));
+        }
         DiffuseName::Lambert => AnyDiffuse::Lambert,
         DiffuseName::P1 => {
-            let Pair([a, b]) = arguments.p1;
+            let Pair([a, b]) = arguments.p1.unwrap_or(Pair([0.15, 0.0]));
             AnyDiffuse::P1(P1::new(a, b).map_err(|error| Failure::Usage(format!("--p1: {error}")))?)
         }
     };
