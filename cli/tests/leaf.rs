@@ -201,6 +201,23 @@ fn a_joint_fit_through_files_finds_the_leaf_and_holds_what_it_is_told_to() {
 }
 
 #[test]
+fn a_leaf_says_how_much_n_and_sigma_depend_on_wavelength_and_whose_angle_its_dhrf_has() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = measured(folder.path(), "leaf.csv");
+    let out = folder.path().join("out");
+    for (coupling, least, most) in [("bousquet", 0.0, 0.0), ("prospecular", 0.05, 0.2)] {
+        let call = ["fit", &input, "--model", "leaf", "--method", "joint", "--coupling", coupling, "-o"];
+        assert!(leafbrdf(&[&call[..], &[out.to_str().unwrap()]].concat()).status.success());
+        let summary: serde_json::Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
+        let n = summary["spectral_invariance"]["n"].as_f64().unwrap();
+        // PROSPECT's index falls from 1.52 to 1.27 or so over 400 to 2500 nm
+        assert!((least..=most).contains(&n), "{coupling}: {n}");
+        assert_eq!(summary["spectral_invariance"]["sigma"], 0);
+        assert!(summary["dhrf"].as_str().unwrap().contains("leaf's own normal"));
+    }
+}
+
+#[test]
 fn options_that_mean_nothing_and_values_in_other_units_are_refused_with_a_remedy() {
     let call = |options: &[&str], parts: &[&str]| {
         fails(&[&["fit", "none.csv", "-o", "nowhere"][..], options].concat(), 2, parts);

@@ -39,6 +39,10 @@ pub(super) fn metadata(metadata: &Metadata) -> Map<String, Value> {
     metadata.iter().map(|(key, value)| (key.to_string(), json!(value))).collect()
 }
 
+/// What theta_s is in `dhrf.csv`, where a leaf may be tilted.
+pub(super) const DHRF_ANGLE: &str = "dhrf.csv: theta_s_deg is counted from the leaf's own normal, as if the leaf lay level; a tilt in the \
+                                     holder has no part in it";
+
 /// How K is written out.
 pub(super) fn constant(normalization: Normalization) -> &'static str {
     match normalization {

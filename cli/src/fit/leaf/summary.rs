@@ -89,6 +89,7 @@ impl LeafOutcome {
             },
             "rmse": finite(fit.rmse),
             "r2": finite(fit.r2),
+            "spectral_invariance": self.spectral_invariance(),
             "search": {
                 "converged": fit.termination.converged(),
                 "starts": fit.starts,
@@ -107,6 +108,7 @@ impl LeafOutcome {
             },
             "directions": directions(selected),
             "values": used,
+            "dhrf": json::DHRF_ANGLE,
             "warnings": self.warnings,
         })
     }
@@ -213,6 +215,23 @@ impl LeafOutcome {
             }
         }
         one
+    }
+
+    /// (max − min)/mean of n and σ over the wavelengths (§4.3): by the model, σ is one, and n too unless it follows PROSPECT's index.
+    fn spectral_invariance(&self) -> Value {
+        if !self.fit.has_surface {
+            return Value::Null;
+        }
+        let n: Vec<f64> = self.fit.wavelengths_nm.iter().filter_map(|nm| self.surface_at(*nm)[0]).collect();
+        let ends = n.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], n| [least.min(*n), most.max(*n)]);
+        let range =
+            if self.fit.scaled_index { (ends[1] - ends[0]) * n.len() as f64 / n.iter().sum::<f64>() } else { 0.0 };
+        let definition = if self.fit.scaled_index {
+            "(max - min)/mean: n follows PROSPECT's index, sigma is the same at all wavelengths, both by the model"
+        } else {
+            "n and sigma are the same at all wavelengths, by the model"
+        };
+        json!({"definition": definition, "n": finite(range), "sigma": 0})
     }
 
     /// Sentences on what the numbers cannot be trusted for.

@@ -102,6 +102,7 @@ impl SurfaceOutcome {
             "bands": {"fitted": self.fitted(), "without_values": empty},
             "directions": directions(selected),
             "values": values(selected, selected.used),
+            "dhrf": json::DHRF_ANGLE,
             "warnings": self.warnings,
         })
     }
