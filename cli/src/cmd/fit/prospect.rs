@@ -96,8 +96,9 @@ impl FromStr for Bounds {
         let Name(parameter) = name.parse()?;
         let Range(lower, upper) = range.parse().map_err(|_| wrong())?;
         let (lowest, highest) = parameter.limits();
-        if lower < lowest || upper > highest {
-            return Err(format!("{text:?}: expected bounds within {lowest}:{highest}"));
+        if let Some(value) = [lower, upper].into_iter().find(|value| !(*value >= lowest && *value <= highest)) {
+            let error: Error = Error::Outside { parameter, value };
+            return Err(format!("{text:?}: expected bounds within {lowest}:{highest}; {error}"));
         }
         Ok(Bounds(parameter, Interval::new(lower, upper)))
     }
