@@ -201,6 +201,66 @@ fn a_joint_fit_through_files_finds_the_leaf_and_holds_what_it_is_told_to() {
 }
 
 #[test]
+fn a_prior_of_any_content_pulls_it_frees_what_is_held_and_is_stated() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = measured(folder.path(), "leaf.csv");
+    let fit = |options: &[&str]| {
+        let out = folder.path().join("out");
+        let output = leafbrdf(&[&["fit", &input, "--model", "leaf", "-o", out.to_str().unwrap()], options].concat());
+        assert!(output.status.success(), "{options:?}: {}", String::from_utf8_lossy(&output.stderr));
+        let summary: serde_json::Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
+        (leaves(&out), summary)
+    };
+    let (plain, summary) = fit(&[]);
+    assert_eq!(summary["parameters"]["cab"]["prior"]["from"], "the method");
+    let away = |row: &Points| (number(row, "cab") - 60.0).abs();
+    // N(60, 1) is ten times narrower than what the data say, the logarithmic one as wide: both pull most of the way
+    for (prior, sd) in [("cab=60:1", "sd"), ("cab=60:0.02:ln", "sd_of_ln")] {
+        let (row, summary) = fit(&["--prior", prior]);
+        assert!(away(&row) < 0.3 * away(&plain), "{prior}: {} from {}", number(&row, "cab"), number(&plain, "cab"));
+        let stated = &summary["parameters"]["cab"]["prior"];
+        assert_eq!((&stated["centre"], &stated["from"]), (&60.0.into(), &"--prior".into()), "{prior}");
+        assert!(stated[sd].is_number(), "{prior}: {stated}");
+        assert_eq!(summary["recipe"]["priors"]["cab"]["centre"], 60.0);
+    }
+    let (row, _) = fit(&["--prior", "n_struct=1.6:0.05,gain=1:0.02"]);
+    assert!(number(&row, "n_struct") != 1.5 && number(&row, "n_struct_se") > 0.0);
+    // the methods without priors of their own take them too, and all at once
+    for method in ["joint", "two-step"] {
+        let (row, summary) = fit(&[
+            "--method",
+            method,
+            "--fix",
+            "cant=1",
+            "--prior",
+            "cbrown=0.005:0.001,cw=0.012:0.5:ln,sigma=0.25:0.1",
+        ]);
+        assert!(number(&row, "cab_se") > 0.0);
+        assert_eq!(summary["parameters"]["cw"]["prior"]["sd_of_ln"], 0.5);
+        assert_eq!(summary["parameters"]["cab"].get("prior"), None, "{method}: what has no prior gets none");
+    }
+}
+
+#[test]
+fn two_step_gives_a_held_or_known_n_to_sigma_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = measured(folder.path(), "leaf.csv");
+    let out = folder.path().join("out");
+    let surface = |options: &[&str]| {
+        let call = ["fit", &input, "--model", "leaf", "--method", "two-step", "-o", out.to_str().unwrap()];
+        let output = leafbrdf(&[&call[..], options].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        (number(&leaves(&out), "n"), number(&leaves(&out), "sigma"))
+    };
+    let free = surface(&[]);
+    let held = surface(&["--hold", "n=1.6"]);
+    // the means over the bands know nothing of what is held: n = 1.6 beside the sigma of another n fits neither
+    assert_eq!(held, surface(&["--hold", "n=1.6", "--surface-from", "surface"]));
+    assert!(held.0 == 1.6 && (held.1 - free.1).abs() > 0.005, "{held:?} {free:?}");
+    assert!(surface(&["--prior", "n=1.6:0.0001"]).0 > free.0);
+}
+
+#[test]
 fn a_leaf_says_how_much_n_and_sigma_depend_on_wavelength_and_whose_angle_its_dhrf_has() {
     let folder = tempfile::tempdir().unwrap();
     let input = measured(folder.path(), "leaf.csv");
@@ -218,6 +278,33 @@ fn a_leaf_says_how_much_n_and_sigma_depend_on_wavelength_and_whose_angle_its_dhr
 }
 
 #[test]
+fn a_prior_in_another_unit_or_of_what_is_not_free_is_refused() {
+    let call = |options: &[&str], parts: &[&str]| {
+        fails(&[&["fit", "none.csv", "-o", "nowhere", "--model"][..], options].concat(), 2, parts);
+    };
+    call(&["leaf", "--prior", "cw=10:2"], &["--prior", "did you mean 10 mg cm⁻²"]);
+    call(&["leaf", "--prior", "cm=20:0.5:ln"], &["--prior", "did you mean 20 g m⁻²"]);
+    call(&["leaf", "--prior", "cab=0:0.5:ln"], &["MEDIAN > 0"]);
+    call(&["leaf", "--prior", "cab=40:20:log"], &["NAME=MEAN:SD"]);
+    call(&["leaf", "--prior", "n=1.5:0.1:ln"], &["n=MEAN:SD"]);
+    call(&["leaf", "--prior", "cab=200:20"], &["0:150", "--bounds"]);
+    call(&["leaf", "--prior", "cab=none"], &["cab=MEDIAN:3:ln"]);
+    call(&["leaf", "--prior", "cab=40:20", "--fix", "cab=40"], &["--prior cab: the parameter is not free"]);
+    call(&["leaf", "--prior", "cab=40:20", "--free", "cw"], &["--prior cab: the parameter is not free"]);
+    call(&["leaf", "--prior", "cant=1:1", "--prospect", "5B"], &["--prior cant: the parameter is not free"]);
+    call(&["leaf", "--prior", "cm=0.005:0.001", "--prospect", "PRO"], &["prot + cbc"]);
+    call(&["leaf", "--prior", "car=8:2", "--car-per-cab", "0.25"], &["tied"]);
+    call(&["leaf", "--prior", "gain=1:0.1", "--gain", "1"], &["gain is held and has a prior"]);
+    call(&["leaf", "--prior", "gain=1:0.1", "--method", "joint"], &["--coupling gain-offset"]);
+    call(&["leaf", "--prior", "cab=40:20,cab=30:20"], &["--prior cab stands twice"]);
+    call(&["leaf", "--prior", "n=1.5:0.1", "--hold", "n=1.5"], &["n is held and has a prior"]);
+    call(&["surface", "--hold", "n=1.5,n=1.6"], &["--hold n stands twice"]);
+    call(&["surface", "--prior", "cab=40:20"], &["--prior cab", "--model leaf"]);
+    call(&["bands", "--prior", "cab=40:20"], &["--prior"]);
+    call(&["prospect", "--prior", "cab=40:20"], &["--prior"]);
+}
+
+#[test]
 fn options_that_mean_nothing_and_values_in_other_units_are_refused_with_a_remedy() {
     let call = |options: &[&str], parts: &[&str]| {
         fails(&[&["fit", "none.csv", "-o", "nowhere"][..], options].concat(), 2, parts);
@@ -231,6 +318,15 @@ fn options_that_mean_nothing_and_values_in_other_units_are_refused_with_a_remedy
     call(&["--model", "leaf", "--n-prior"], &["--n-prior"]);
     call(&["--model", "leaf", "--bounds", "cw=0:10"], &["within 0:1", "did you mean 10 mg cm⁻²"]);
     call(&["--model", "prospect", "--bounds", "cm=0:20"], &["did you mean 20 g m⁻²"]);
+    let two_step = ["--model", "leaf", "--method", "two-step", "--surface-from", "bands"];
+    for (option, named) in [
+        ("--facets=ggx", "--facets"),
+        ("--diffuse=p1", "--diffuse"),
+        ("--tilt", "a tilt"),
+        ("--prior=n=1.5:0.1", "--prior"),
+    ] {
+        call(&[&two_step[..], &[option]].concat(), &["--surface-from bands", named]);
+    }
     assert!(!Path::new("nowhere").exists());
 }
 

@@ -98,9 +98,19 @@ impl LeafOutcome {
         }
     }
 
+    /// Has the user given this parameter of the interior, the gain or the offset a prior?
+    fn is_given_a_prior(&self, i: usize) -> bool {
+        self.options.treatments.iter().any(|(at, treatment)| *at == i && treatment.prior().is_some())
+    }
+
     /// Do the data, or whoever held it, say what it is?
     fn is_known(&self, i: usize) -> bool {
-        !matches!(self.fit.knowledge[i], Knowledge::NotIdentifiable | Knowledge::PriorOnly)
+        match self.fit.knowledge[i] {
+            Knowledge::NotIdentifiable => false,
+            // the method's wide prior is no result; one that the user gave is what they know
+            Knowledge::PriorOnly => self.is_given_a_prior(i),
+            _ => true,
+        }
     }
 
     /// Dry matter that was fitted as C_prot + C_cbc.

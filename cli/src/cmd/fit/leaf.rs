@@ -4,10 +4,12 @@ use clap::{Args, ValueEnum};
 use indicatif::ProgressBar;
 use leafbrdf::fit::fit_leaf;
 use leafbrdf::measurement::Measurement;
-use leafbrdf_fit::leaf::parameters::{GAIN, OFFSET, place};
+use leafbrdf_fit::leaf::parameters::{GAIN, NAMES, OFFSET, interior, place};
 use leafbrdf_fit::leaf::recipe::{DORSIVENTRAL, DRY_MATTER, PLAIN, TWO_LAYER};
-use leafbrdf_fit::leaf::{Interior, LeafOptions, Method, Recipe, SurfaceFrom, Treatment};
-use leafbrdf_prospect::Coupling;
+use leafbrdf_fit::leaf::{Interior, LeafOptions, Method, Prior, Recipe, SurfaceFrom, Treatment, default_bounds};
+use leafbrdf_fit::surface::model::{N, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
+use leafbrdf_fit::surface::{DiffuseKind, FacetKind, Treatment as Level};
+use leafbrdf_prospect::{Coupling, Parameter};
 
 use super::super::Failure;
 use super::super::leaf::CouplingName;
@@ -75,7 +77,8 @@ pub struct Options {
     /// for the others, where the share does not follow the dry matter]
     #[arg(long, value_enum)]
     interior: Option<InteriorName>,
-    /// Where two-step takes n and sigma from [default: bands with the paper's surface, else surface]
+    /// Where two-step takes n and sigma from [default: bands with the paper's level surface whose n and sigma are free and without
+    /// priors, else surface]
     #[arg(long, value_enum)]
     surface_from: Option<FromName>,
     /// Contents, gain and offset have the wide priors of recommended in two-step and joint too
@@ -151,6 +154,23 @@ impl Options {
                 FromName::Surface => SurfaceFrom::Surface,
             };
         }
+        if method == Method::TwoStep {
+            // the bands are fitted with the paper's level surface, n and sigma free: anything else is one surface's
+            let other = (options.surface.facets != FacetKind::Beckmann).then_some("--facets");
+            let other = other.or((options.surface.diffuse != DiffuseKind::Lambert).then_some("--diffuse"));
+            let tilted = options.surface.parameters[TILT_IN_PLANE..=TILT_LATERAL].iter();
+            let other = other.or(tilted.clone().any(|tilt| *tilt != Level::Held(0.0)).then_some("a tilt"));
+            let spoken = [N, SIGMA].iter().any(|&place| arguments.surface.speaks_of(place));
+            match other.or(spoken.then_some("--hold or --prior of n or sigma")) {
+                Some(other) if self.surface_from == Some(FromName::Bands) => {
+                    return Err(Failure::Usage(format!(
+                        "--surface-from bands: separately fitted bands have the paper's surface, without {other}; leave one of them out"
+                    )));
+                }
+                Some(_) => options.surface_from = SurfaceFrom::Surface,
+                None => {}
+            }
+        }
         let coupling = if method == Method::Recommended { Coupling::GainOffset } else { options.coupling };
         for (option, value, at, has) in [
             ("--gain", self.gain, GAIN, coupling == Coupling::GainOffset),
@@ -166,7 +186,44 @@ impl Options {
             }
             options.treatments.push((at, Treatment::Held(value)));
         }
-        arguments.prospect.interior_of_a_leaf(&mut options)?;
+        let mut priors = Vec::new();
+        for (at, prior) in arguments.surface.interior_priors() {
+            let name = NAMES.get(at).copied().unwrap_or_default();
+            let Some(prior) = prior else {
+                let message = format!(
+                    "--prior {name}=none: --method recommended needs a prior, the others have none without --content-priors; a wide one \
+                     is {name}=MEDIAN:3:ln"
+                );
+                return Err(Failure::Usage(message));
+            };
+            if let Some(parameter) = interior(at) {
+                priors.push((parameter, prior));
+                continue;
+            }
+            if !(coupling == Coupling::GainOffset || (at == OFFSET && coupling == Coupling::Offset)) {
+                let message =
+                    format!("--prior {name}: coupling {} has none; try --coupling gain-offset", coupling.name());
+                return Err(Failure::Usage(message));
+            }
+            if options.treatments.iter().any(|(other, _)| *other == at) {
+                return Err(Failure::Usage(format!(
+                    "{name} is held and has a prior: leave out --{name}, or its --prior"
+                )));
+            }
+            let bounds = default_bounds(at, prior.log);
+            if !(prior.centre >= bounds.lower && prior.centre <= bounds.upper) {
+                let message = format!(
+                    "--prior {name}: {} lies outside its bounds {}:{}",
+                    prior.centre, bounds.lower, bounds.upper
+                );
+                return Err(Failure::Usage(message));
+            }
+            if prior.log && at == OFFSET {
+                return usage("--prior offset: it may be negative: expected offset=MEAN:SD");
+            }
+            options.treatments.push((at, Treatment::Free { bounds, prior: Some(prior) }));
+        }
+        arguments.prospect.interior_of_a_leaf(&mut options, &priors)?;
         Ok(options)
     }
 }
@@ -191,10 +248,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     )
 }
 
-/// What --prospect, --free, --fix, --bounds and --car-per-cab say of a leaf's interior.
+/// What --prospect, --free, --fix, --bounds, --car-per-cab and --prior say of a leaf's interior.
 impl super::prospect::Options {
-    fn interior_of_a_leaf(&self, options: &mut LeafOptions) -> Result<(), Failure> {
-        let decided = self.decided(options.version)?;
+    fn interior_of_a_leaf(&self, options: &mut LeafOptions, priors: &[(Parameter, Prior)]) -> Result<(), Failure> {
+        let decided = self.decided(options.version, priors)?;
         options.version = decided.version;
         options.car_per_cab = decided.car_per_cab;
         options.treatments.extend(decided.treatments.into_iter().map(|(parameter, what)| (place(parameter), what)));

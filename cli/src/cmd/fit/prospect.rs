@@ -8,9 +8,8 @@ use leafbrdf::fit::{ProspectOptions, fit_prospect};
 use leafbrdf::spectra::{LeafSpectra, read_spectra};
 use leafbrdf_fit::Interval;
 use leafbrdf_fit::hemispherical::{Free, default_free};
-use leafbrdf_fit::leaf::Treatment;
-use leafbrdf_fit::leaf::default_bounds;
 use leafbrdf_fit::leaf::parameters::place;
+use leafbrdf_fit::leaf::{Prior, Treatment, default_bounds};
 use leafbrdf_prospect::{Error, LeafParams, Parameter, Prospect, Version, table};
 
 use super::super::Failure;
@@ -121,8 +120,8 @@ impl Options {
         }
     }
 
-    /// The same options for `--model leaf`: what they decide, the rest being the method's.
-    pub(super) fn decided(&self, default: Version) -> Result<Decided, Failure> {
+    /// The same options for `--model leaf`: what they and the user's priors decide, the rest being the method's.
+    pub(super) fn decided(&self, default: Version, priors: &[(Parameter, Prior)]) -> Result<Decided, Failure> {
         let usage = |message: String| Err(Failure::Usage(message));
         if self.n_prior {
             return usage(
@@ -179,15 +178,21 @@ impl Options {
             let free = self.free.iter().any(|name| name.0 == parameter);
             let bounds = self.bounds.iter().find(|bounds| bounds.0 == parameter).map(|bounds| bounds.1);
             let fixed = treatments.iter().any(|(other, _)| *other == parameter);
-            if bounds.is_some() && (fixed || !known(parameter) || (!self.free.is_empty() && !free)) {
-                return usage(format!("--bounds {}: the parameter is not free", parameter.name()));
+            let prior = priors.iter().find(|prior| prior.0 == parameter).map(|prior| prior.1);
+            let held = fixed || !known(parameter) || (!self.free.is_empty() && !free);
+            for (option, given) in [("--bounds", bounds.is_some()), ("--prior", prior.is_some())] {
+                if given && held {
+                    return usage(format!("{option} {}: the parameter is not free", parameter.name()));
+                }
             }
-            let log = false;
-            match (bounds, free, fixed) {
-                (Some(bounds), ..) => treatments.push((parameter, Treatment::Free { bounds, prior: None })),
+            if let Some(prior) = prior {
+                self.check_prior(parameter, prior, version, free)?;
+            }
+            match (bounds, free || prior.is_some(), fixed) {
+                (Some(bounds), ..) => treatments.push((parameter, Treatment::Free { bounds, prior })),
                 (None, true, _) => {
-                    let bounds = default_bounds(place(parameter), log);
-                    treatments.push((parameter, Treatment::Free { bounds, prior: None }));
+                    let bounds = default_bounds(place(parameter), prior.is_some_and(|prior| prior.log));
+                    treatments.push((parameter, Treatment::Free { bounds, prior }));
                 }
                 (None, false, false)
                     if !self.free.is_empty() && parameter != Parameter::NStruct && known(parameter) =>
@@ -198,6 +203,31 @@ impl Options {
             }
         }
         Ok(Decided { version, car_per_cab: self.car_per_cab, treatments })
+    }
+
+    /// A prior must speak of a parameter of its own, in its unit, and lie where the parameter may be.
+    fn check_prior(&self, parameter: Parameter, prior: Prior, version: Version, free: bool) -> Result<(), Failure> {
+        let (name, centre) = (parameter.name(), prior.centre);
+        let usage = |message: String| Err(Failure::Usage(message));
+        if parameter == Parameter::Car && self.car_per_cab.is_some() {
+            return usage("--prior car: car is tied to cab; leave it out, or leave --car-per-cab out".to_string());
+        }
+        if parameter == Parameter::Cm && version == Version::Pro && !free {
+            return usage("--prior cm: dry matter is prot + cbc in PROSPECT-PRO; give priors of these".to_string());
+        }
+        let (lowest, highest) = parameter.limits();
+        if !(centre >= lowest && centre <= highest) {
+            return usage(format!("--prior: {}", Error::Outside { parameter, value: centre }));
+        }
+        let given = self.bounds.iter().find(|bounds| bounds.0 == parameter).map(|bounds| bounds.1);
+        let bounds = given.unwrap_or_else(|| default_bounds(place(parameter), prior.log));
+        if !(centre >= bounds.lower && centre <= bounds.upper) {
+            let (lower, upper) = (bounds.lower, bounds.upper);
+            return usage(format!(
+                "--prior {name}: {centre} lies outside its bounds {lower}:{upper}; --bounds moves them"
+            ));
+        }
+        Ok(())
     }
 
     /// What is sought, checked as far as that can be done without a spectrum.

@@ -8,6 +8,7 @@ use leafbrdf::fit::fit_surface;
 use leafbrdf::measurement::Measurement;
 use leafbrdf_core::Normalization;
 use leafbrdf_fit::Interval;
+use leafbrdf_fit::leaf::{self, parameters};
 use leafbrdf_fit::surface::model::{DIFFUSE_E, N, PARAMETERS, SIGMA, TILT_IN_PLANE, TILT_LATERAL};
 use leafbrdf_fit::surface::{DiffuseKind, NAMES, Prior, SurfaceOptions, Treatment};
 
@@ -53,8 +54,10 @@ pub struct Options {
     #[arg(long, value_name = "NAME=VALUE,…", value_delimiter = ',', allow_hyphen_values = true)]
     hold: Vec<Hold>,
     /// What is known beforehand, as a mean and a standard deviation, or NAME=none [default: p1_a=0.15:0.1, p1_b=0:0.1, p2_e=0.1:0.03,
-    /// tilt_in_plane_deg=0:3, tilt_lateral_deg=0:3]
-    #[arg(long, value_name = "NAME=MEAN:SD,…", value_delimiter = ',', allow_hyphen_values = true)]
+    /// tilt_in_plane_deg=0:3, tilt_lateral_deg=0:3]. With --model leaf also n_struct, cab, car, cant, cbrown, cw, cm, prot, cbc, gain and
+    /// offset, in the units of the columns (cab=40:20), which replaces the method's prior and frees a parameter that the method
+    /// holds; and for those NAME=MEDIAN:SD:ln, where ln(x/MEDIAN) has this SD (cab=40:0.5:ln: within a factor of 1.65 two times in three)
+    #[arg(long, value_name = "NAME=MEAN:SD[:ln],…", value_delimiter = ',', allow_hyphen_values = true)]
     prior: Vec<PriorOf>,
 }
 
@@ -62,14 +65,14 @@ pub struct Options {
 #[derive(Clone, Copy, Debug)]
 struct Hold(usize, f64);
 
-/// NAME=MEAN:SD or NAME=none.
+/// NAME=MEAN:SD, NAME=MEDIAN:SD:ln or NAME=none: the place is that of a leaf's list, which begins with the surface's.
 #[derive(Clone, Copy, Debug)]
-struct PriorOf(usize, Option<Prior<f64>>);
+struct PriorOf(usize, Option<leaf::Prior>);
 
-fn named(text: &str) -> Result<(usize, &str), String> {
+fn named<'a>(text: &'a str, names: &[&str]) -> Result<(usize, &'a str), String> {
     let (name, value) = text.split_once('=').ok_or_else(|| format!("{text:?}: expected NAME=…, such as n=1.45"))?;
-    let place = NAMES.iter().position(|known| *known == name.trim());
-    let place = place.ok_or_else(|| format!("{name:?} is no parameter: expected one of {}", NAMES.join(", ")))?;
+    let place = names.iter().position(|known| *known == name.trim());
+    let place = place.ok_or_else(|| format!("{name:?} is no parameter: expected one of {}", names.join(", ")))?;
     Ok((place, value.trim()))
 }
 
@@ -82,7 +85,7 @@ impl FromStr for Hold {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (place, value) = named(text)?;
+        let (place, value) = named(text, &NAMES)?;
         match value.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(Hold(place, value * unit(place))),
             _ => Err(format!("{text:?}: expected NAME=VALUE, such as n=1.45")),
@@ -94,17 +97,33 @@ impl FromStr for PriorOf {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (place, value) = named(text)?;
+        let (place, value) = named(text, &parameters::NAMES)?;
         if value == "none" {
             return Ok(PriorOf(place, None));
         }
-        let numbers = value.split_once(':').and_then(|(mean, sd)| Some((mean.parse().ok()?, sd.parse().ok()?)));
-        match numbers {
-            Some((mean, sd)) if f64::is_finite(mean) && sd > 0.0 && f64::is_finite(sd) => {
-                Ok(PriorOf(place, Some(Prior { mean: mean * unit(place), sd: sd * unit(place) })))
-            }
-            _ => Err(format!("{text:?}: expected NAME=MEAN:SD with SD > 0, such as n=1.48:0.03, or NAME=none")),
+        let wrong = || format!("{text:?}: expected NAME=MEAN:SD with SD > 0, such as n=1.48:0.03, or NAME=none");
+        let parts: Vec<&str> = value.split(':').map(str::trim).collect();
+        let (centre, sd, log) = match parts[..] {
+            [centre, sd] => (centre, sd, false),
+            [centre, sd, "ln"] => (centre, sd, true),
+            _ => return Err(wrong()),
+        };
+        let (Ok(centre), Ok(sd)) = (centre.parse::<f64>(), sd.parse::<f64>()) else { return Err(wrong()) };
+        if !(centre.is_finite() && sd > 0.0 && sd.is_finite()) {
+            return Err(wrong());
         }
+        if log && place < PARAMETERS {
+            let name = NAMES[place];
+            return Err(format!(
+                "{text:?}: the surface's parameters have no logarithmic priors: expected {name}=MEAN:SD"
+            ));
+        }
+        if log && centre <= 0.0 {
+            return Err(format!("{text:?}: expected a MEDIAN > 0, for it is ln(x/MEDIAN) that has this SD"));
+        }
+        let prior =
+            if log { leaf::Prior::log(centre, sd) } else { leaf::Prior::plain(centre * unit(place), sd * unit(place)) };
+        Ok(PriorOf(place, Some(prior)))
     }
 }
 
@@ -124,6 +143,39 @@ impl Options {
             }
             None => Ok(()),
         }
+    }
+
+    /// Each parameter once, and none both held and with a prior: the one would silently win over the other.
+    fn check_once(&self) -> Result<(), Failure> {
+        let name = |place: usize| parameters::NAMES.get(place).copied().unwrap_or_default();
+        for (at, Hold(place, _)) in self.hold.iter().enumerate() {
+            if self.hold.iter().take(at).any(|other| other.0 == *place) {
+                return Err(Failure::Usage(format!("--hold {} stands twice", name(*place))));
+            }
+        }
+        for (at, PriorOf(place, _)) in self.prior.iter().enumerate() {
+            if self.prior.iter().take(at).any(|other| other.0 == *place) {
+                return Err(Failure::Usage(format!("--prior {} stands twice", name(*place))));
+            }
+            if self.hold.iter().any(|hold| hold.0 == *place) {
+                let name = name(*place);
+                return Err(Failure::Usage(format!(
+                    "{name} is held and has a prior: leave it out of --hold or of --prior"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// What --prior says of a leaf's interior, gain and offset: places in its list, and priors in the units of its columns.
+    pub fn interior_priors(&self) -> Vec<(usize, Option<leaf::Prior>)> {
+        let inside = self.prior.iter().filter(|prior| prior.0 >= PARAMETERS);
+        inside.map(|PriorOf(place, prior)| (*place, *prior)).collect()
+    }
+
+    /// Does --hold or --prior speak of this parameter of the surface?
+    pub fn speaks_of(&self, place: usize) -> bool {
+        self.hold.iter().any(|hold| hold.0 == place) || self.prior.iter().any(|prior| prior.0 == place)
     }
 
     /// The surface as asked for, over `preset` (what the model takes where nothing is said).
@@ -150,10 +202,15 @@ impl Options {
             let Range(lower, upper) = range;
             options.parameters[place] = Treatment::Free { bounds: Interval::new(lower, upper), prior: None };
         }
+        self.check_once()?;
         for PriorOf(place, wanted) in &self.prior {
-            match &mut options.parameters[*place] {
-                Treatment::Free { prior, .. } => *prior = *wanted,
-                Treatment::Held(_) => return Err(absent("--prior", *place)),
+            match options.parameters.get_mut(*place) {
+                Some(Treatment::Free { prior, .. }) => {
+                    *prior = wanted.map(|wanted| Prior { mean: wanted.centre, sd: wanted.sd });
+                }
+                Some(Treatment::Held(_)) => return Err(absent("--prior", *place)),
+                // the interior's: see `interior_priors`
+                None => {}
             }
         }
         for Hold(place, value) in &self.hold {
@@ -192,6 +249,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.check_starts()?;
     arguments.prospect.refuse()?;
     arguments.leaf.refuse("surface")?;
+    if let Some((place, _)) = arguments.surface.interior_priors().first() {
+        let name = parameters::NAMES.get(*place).copied().unwrap_or_default();
+        return Err(Failure::Usage(format!(
+            "--prior {name}: a surface has no such parameter; it is one of --model leaf"
+        )));
+    }
     let options = arguments.surface.surface(arguments, SurfaceOptions::paper())?;
     let Range(lower, upper) = arguments.k_l_bounds;
     let model = Model { name: "surface", normalization: Some(options.normalization.name()), bands: None };

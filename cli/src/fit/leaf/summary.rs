@@ -207,10 +207,13 @@ impl LeafOutcome {
             map.insert("at_bound".to_string(), json::at_bound(fit.at_bound[i]));
             if let Some(prior) = prior {
                 let (sd, scale) = if prior.log { ("sd_of_ln", 1.0) } else { ("sd", unit(i)) };
-                let prior = json!({
+                let mut prior = json!({
                     "centre": prior.centre * unit(i), sd: prior.sd * scale,
                     "share_of_its_variance_left": finite(fit.prior_share[i]),
                 });
+                if i >= PARAMETERS {
+                    prior["from"] = json!(if self.is_given_a_prior(i) { "--prior" } else { "the method" });
+                }
                 map.insert("prior".to_string(), prior);
             }
         }
@@ -279,7 +282,12 @@ impl LeafOutcome {
         if !unknown.is_empty() {
             warnings.push(format!("not identifiable from these data, and left empty: {unknown}"));
         }
-        let prior = names(&|i| self.has(i) && fit.knowledge[i] == Knowledge::PriorOnly);
+        let alone = |i: usize| self.has(i) && fit.knowledge[i] == Knowledge::PriorOnly;
+        let given = names(&|i| alone(i) && self.is_given_a_prior(i));
+        if !given.is_empty() {
+            warnings.push(format!("the data say nothing beyond the prior that was given: {given}"));
+        }
+        let prior = names(&|i| alone(i) && !self.is_given_a_prior(i));
         if !prior.is_empty() {
             warnings.push(format!("the data say nothing beyond the prior, and these are left empty: {prior}"));
         }
