@@ -130,6 +130,35 @@ fn the_columns_are_those_of_the_contract_in_its_order() {
 }
 
 #[test]
+fn every_model_names_value_standard_error_and_correlations_alike() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("leaf.csv"), wide(Normalization::Bousquet2005, "brf")).unwrap();
+    for model in ["bands", "surface", "leaf"] {
+        let output = run(folder.path(), &["fit", "leaf.csv", "--model", model, "-o", "out"]);
+        assert!(output.status.success(), "{model}: {}", stderr(&output));
+        let summary = fs::read(folder.path().join("out/summary.json")).unwrap();
+        let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap();
+        for key in
+            ["program", "model", "normalization", "rmse", "r2", "values", "spectral_invariance", "warnings", "errors"]
+        {
+            assert!(summary.get(key).is_some(), "{model}: no {key}");
+        }
+        let row = &rows(&folder.path().join("out/leaves.csv"))[0];
+        for name in ["n", "sigma"] {
+            let parameter = &summary["parameters"][name];
+            // serde_json reads a number to a unit or two in its last place
+            let same = |json: &serde_json::Value, cell: &str| match json.as_f64() {
+                Some(value) => (value / cell.parse::<f64>().unwrap() - 1.0).abs() < 1e-15,
+                None => cell.is_empty(),
+            };
+            assert!(same(&parameter["value"], &row[name]), "{model}: {name} {parameter}");
+            assert!(same(&parameter["standard_error"], &row[&format!("{name}_se")]), "{model}: {name} {parameter}");
+        }
+        assert!(summary["correlations"]["n,sigma"].is_number(), "{model}: {}", summary["correlations"]);
+    }
+}
+
+#[test]
 fn several_leaves_get_a_folder_each_and_one_that_fails_stops_no_other() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);

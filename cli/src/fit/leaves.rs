@@ -106,6 +106,7 @@ impl From<&Summary> for LeafValues {
             normalization: Some(summary.normalization.name().to_string()),
             n: Some(summary.n),
             sigma: Some(summary.sigma),
+            surface_se: [summary.surface_se[0], summary.surface_se[1], None, None],
             rmse: summary.rmse,
             r2: summary.r2,
             bands: summary.fitted,

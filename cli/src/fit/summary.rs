@@ -24,6 +24,8 @@ pub struct Summary {
     pub n: f64,
     /// Mean σ over the bands that were fitted (Table 4).
     pub sigma: f64,
+    /// Median over the bands of their standard errors of n and σ: that of the means where all bands err alike.
+    pub surface_se: [Option<f64>; 2],
     /// √(Σ residual²/values) over all bands, sr⁻¹.
     pub rmse: f64,
     /// 1 − Σ residual²/Σ (value − mean)² over all values.
@@ -80,6 +82,11 @@ impl Summary {
             "parameters": parameters,
             "rmse": finite(rmse),
             "r2": finite(r2),
+            "errors": {
+                "method": "standard_error is the median of the bands' own: that of the mean where all bands err alike, too large where their \
+                           errors are independent",
+            },
+            "correlations": correlations(&fits),
             "spectral_invariance": {
                 "definition": "(max - min)/mean over the bands of the range (section 4.3)",
                 "vis": invariance(&fits, f64::MIN, VIS_END_NM),
@@ -96,9 +103,11 @@ impl Summary {
             "warnings": warnings,
         });
         let mean = |p: usize| fits.iter().map(|(_, fit)| fit.parameters[p]).sum::<f64>() / fits.len() as f64;
+        let typical = |p: usize| median(fits.iter().filter_map(|(_, fit)| fit.standard_errors[p]).collect());
         Summary {
             n: mean(1),
             sigma: mean(2),
+            surface_se: [1, 2].map(|p| Some(typical(p)).filter(|error| error.is_finite())),
             rmse,
             r2,
             fitted: fits.len(),
@@ -146,14 +155,26 @@ fn parameter(fits: &[(f64, &BandFit<f64>)], p: usize) -> Value {
     let correlation = |pair: usize| median(fits.iter().filter_map(|(_, fit)| fit.correlations[pair]).collect());
     let correlations: serde_json::Map<String, Value> =
         pairs.iter().map(|(pair, with)| ((*with).to_string(), finite(correlation(*pair)))).collect();
+    let typical = finite(median(errors));
     json!({
+        "value": finite(mean),
+        "standard_error": typical,
         "mean_over_bands": finite(mean),
         "standard_deviation_over_bands": finite(variance.sqrt()),
         "min": finite(values.iter().copied().fold(f64::INFINITY, f64::min)),
         "max": finite(values.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
-        "median_standard_error_of_a_band": finite(median(errors)),
+        "median_standard_error_of_a_band": typical,
         "median_correlation_with": correlations,
     })
+}
+
+/// The bands' correlations of the pairs, each the median over the bands, named as in the other models.
+fn correlations(fits: &[(f64, &BandFit<f64>)]) -> Value {
+    let pairs = [(0, 1), (0, 2), (1, 2)].iter().enumerate().map(|(at, (one, other))| {
+        let correlation = median(fits.iter().filter_map(|(_, fit)| fit.correlations[at]).collect());
+        (format!("{},{}", PARAMETERS[*one], PARAMETERS[*other]), finite(correlation))
+    });
+    Value::Object(pairs.collect())
 }
 
 /// (max − min)/mean of n and of σ over the bands of a range of wavelengths (§4.3); `null` without bands there.
