@@ -121,6 +121,13 @@ fn directions_of_one_plane_show_their_values_and_what_lies_below_a_tilted_leafs_
     let coloured = |tag: &&&str| tag.contains("r=\"5.5\"") && !tag.contains("#ffffff");
     assert_eq!(dots.iter().filter(coloured).count(), 2 * 7, "the measured values of both wavelengths");
     assert!(svg.contains("coloured dots"));
+    // the leaf leans towards the source: the modelled maps end before the rim on the far side, in the colour of no value
+    let empty = svg.split('<').filter(|tag| tag.starts_with("path") && tag.contains("fill=\"#eceef1\""));
+    assert_eq!(empty.count(), 2);
+    let level = Study::new(&["beech"], &["--model", "surface"]);
+    succeed(&["plot", &level.fit(), "--svg"]);
+    let (_, svg) = &svgs(&level.at("fit/figures"))[0];
+    assert!(!svg.split('<').any(|tag| tag.starts_with("path") && tag.contains("fill=\"#eceef1\"")));
 }
 
 #[test]

@@ -133,8 +133,25 @@ pub fn round_up(value: f64) -> f64 {
     digits.map(|digit| digit * power).into_iter().find(|round| *round >= value * (1.0 - 1e-9)).unwrap_or(10.0 * power)
 }
 
+/// Below this all numbers of an axis have an exponent: six decimals would not fit beside it, nor tell them apart.
+const SMALL: f64 = 1e-3;
+
 /// Numbers as text, with the decimals that tell the nearest two apart; a true minus sign.
 pub fn labels(values: &[f64]) -> Vec<String> {
+    let largest = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    if largest > 0.0 && largest < SMALL {
+        let written = |value: f64, digits: usize| format!("{value:.digits$e}");
+        let exact = |digits: &usize| {
+            let back = |value: f64| written(value, *digits).parse().unwrap_or(f64::NAN);
+            values.iter().all(|value| (back(*value) - value).abs() < 1e-6 * largest)
+        };
+        let digits = (0..3).find(exact).unwrap_or(3);
+        // what is left of 0 after a walk in steps is 0
+        let label = |value: &f64| {
+            if value.abs() < 1e-9 * largest { "0".to_string() } else { written(*value, digits).replace('-', "−") }
+        };
+        return values.iter().map(label).collect();
+    }
     let decimals = values.iter().map(|value| {
         let exact = |digits: &usize| {
             let scaled = value * 10.0_f64.powi(*digits as i32);
@@ -320,6 +337,10 @@ mod tests {
     #[test]
     fn tick_labels_have_one_number_of_decimals_and_a_minus_sign() {
         assert_eq!(labels(&[-0.5, 0.0, 0.25]), ["−0.50", "0.00", "0.25"]);
+        assert_eq!(labels(&[-0.008, 0.0, 0.008]), ["−0.008", "0.000", "0.008"]);
+        assert_eq!(labels(&[-5e-7, -0.0, 1.5e-6]), ["−5.0e−7", "0", "1.5e−6"]);
+        assert_eq!(labels(&[-2e-13, 1e-29, 2e-13]), ["−2e−13", "0", "2e−13"]);
+        assert_eq!(labels(&[0.0]), ["0"]);
         assert_eq!(labels(&[100.0, 200.0]), ["100", "200"]);
     }
 

@@ -18,6 +18,8 @@ const LEFT: f64 = 222.0;
 const TOP: f64 = 236.0;
 /// Nodes of the grid across the disc. A lobe of σ = 0.05 is some 4° wide at half its height, which is five nodes.
 const NODES: usize = 151;
+/// Behind the maps, where there is no value.
+const SKY: &str = "#eceef1";
 /// Shades of the colour scale.
 const SHADES: usize = 24;
 
@@ -52,6 +54,8 @@ struct Maps {
     /// Do the directions enclose an area? Those of one plane do not: their dots carry the values.
     encloses: bool,
     grids: Vec<(&'static str, Grid)>,
+    /// What the tilt puts below the leaf's horizon: the rim and, within it, where the model ends; or nothing.
+    hidden: String,
     greatest: f64,
     middle: f64,
 }
@@ -79,7 +83,7 @@ pub fn hemisphere_map(prefix: &str, title: &str, note: &str, columns: &[Column<'
                 &mut svg,
                 centre,
                 column,
-                (&maps.hull, row > 0, maps.encloses),
+                (&maps.hull, row > 0, maps.encloses, &maps.hidden),
                 grid,
                 &scale,
                 [row == 0 && place == 0, row == 0 && place + 1 == drawn.len()],
@@ -125,30 +129,61 @@ fn maps(column: &Column<'_>) -> Option<Maps> {
         greatest = used().map(|dot| model(dot.theta_v_deg, dot.phi_v_deg)).fold(greatest, f64::max);
     }
     let mut grids = vec![("measured", measured)];
+    let mut hidden = String::new();
     if let Some(model) = &column.model {
         let modelled = Grid::new(NODES, NODES, |i, j| {
             let at = point(i, j);
             let [theta_v, phi_v] = direction_of(at);
-            // beyond the rim, for the last cells inside it: the value at the rim
-            if theta_v < 95.0 { model(theta_v.min(89.9), phi_v) } else { f64::NAN }
+            // beyond the rim or the leaf's horizon, for the last cells inside it: the value there
+            if theta_v < 95.0 { model(theta_v.min(horizon(model, phi_v)), phi_v) } else { f64::NAN }
         });
+        hidden = below_the_horizon(model);
         grids.push(("modelled", modelled));
     }
     let mut sorted = values.clone();
     sorted.sort_by(f64::total_cmp);
     let middle = sorted[sorted.len() / 2];
-    let corners = mesh.hull().iter().map(|corner| place(*corner, [0.0, 0.0]));
-    let ring: Vec<[f64; 2]> = corners.clone().collect();
+    let ring: Vec<[f64; 2]> = mesh.hull().iter().map(|corner| place(*corner, [0.0, 0.0])).collect();
     let sides = ring.iter().zip(ring.iter().cycle().skip(1));
     let area: f64 = sides.map(|([x, y], [next_x, next_y])| 0.5 * (x * next_y - next_x * y)).sum();
     // a square pixel: less shows no colour
     let encloses = area.abs() > 1.0;
-    let mut hull = String::new();
-    for [x, y] in corners {
-        hull.push_str(&format!("{}{} {}", if hull.is_empty() { 'M' } else { 'L' }, number(x), number(y)));
+    Some(Maps { hull: ring_path(&ring), encloses, grids, hidden, greatest, middle })
+}
+
+/// A closed line, px.
+fn ring_path(ring: &[[f64; 2]]) -> String {
+    let mut data = String::new();
+    for [x, y] in ring {
+        data.push_str(&format!("{}{} {}", if data.is_empty() { 'M' } else { 'L' }, number(*x), number(*y)));
     }
-    hull.push('Z');
-    Some(Maps { hull, encloses, grids, greatest, middle })
+    data.push('Z');
+    data
+}
+
+/// The largest θ_v at which the model has a value, degrees: 89.9 but for tilted leaves.
+fn horizon(model: &dyn Fn(f64, f64) -> f64, phi_v_deg: f64) -> f64 {
+    let (mut seen, mut hidden) = (0.0, 89.9);
+    if model(hidden, phi_v_deg).is_finite() {
+        return hidden;
+    }
+    for _ in 0..12 {
+        let middle = 0.5 * (seen + hidden);
+        *(if model(middle, phi_v_deg).is_finite() { &mut seen } else { &mut hidden }) = middle;
+    }
+    seen
+}
+
+/// The part of the disc that a tilted leaf does not see, as a path; nothing for a level one.
+fn below_the_horizon(model: &dyn Fn(f64, f64) -> f64) -> String {
+    let ends: Vec<(f64, f64)> = (0..180).map(|i| 2.0 * f64::from(i)).map(|phi| (horizon(model, phi), phi)).collect();
+    if ends.iter().all(|(theta, _)| *theta == 89.9) {
+        return String::new();
+    }
+    let at = |theta: f64, phi: f64| place(disc(theta, phi), [0.0, 0.0]);
+    let inner: Vec<[f64; 2]> =
+        ends.iter().map(|&(theta, phi)| at(if theta == 89.9 { 90.0 } else { theta }, phi)).collect();
+    rim() + &ring_path(&inner)
 }
 
 /// From BRDF to a shade.
@@ -218,7 +253,7 @@ fn map(
     svg: &mut Svg,
     centre: [f64; 2],
     column: &Column<'_>,
-    (hull, whole, encloses): (&str, bool, bool),
+    (hull, whole, encloses, hidden): (&str, bool, bool, &str),
     grid: &Grid,
     scale: &Scale,
     [first, last]: [bool; 2],
@@ -226,15 +261,17 @@ fn map(
     let step = 2.0 / (NODES - 1) as f64;
     let at = |x: f64, y: f64| place([1.0 - step * x, 1.0 - step * y], [0.0, 0.0]);
     svg.begin_at(centre);
-    svg.circle([0.0, 0.0], RADIUS, "#eceef1", None, "sky");
+    svg.circle([0.0, 0.0], RADIUS, SKY, None, "sky");
     let rim = rim();
     let domain = if whole { &rim } else { hull };
     svg.begin_clip(domain);
-    // what a tilt puts below the leaf's horizon has no value, and keeps the ground's colour
-    svg.fill(&path(&grid.at_least(f64::MIN, at)), &shade_hex(0), 1.0);
+    svg.fill(domain, &shade_hex(0), 1.0);
     for shade in 1..SHADES {
         let level = scale.value(shade as f64 / SHADES as f64);
         svg.fill(&path(&grid.at_least(level, at)), &shade_hex(shade), 1.0);
+    }
+    if whole {
+        svg.fill(hidden, SKY, 1.0);
     }
     svg.end();
     if whole {
