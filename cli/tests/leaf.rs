@@ -316,6 +316,9 @@ fn options_that_mean_nothing_and_values_in_other_units_are_refused_with_a_remedy
     call(&["--model", "leaf", "--free", "cab", "--fix", "cab=40"], &["cab is free and fixed"]);
     call(&["--model", "leaf", "--prospect", "5B", "--fix", "cant=2"], &["5B"]);
     call(&["--model", "leaf", "--n-prior"], &["--n-prior"]);
+    for cm in ["--bounds=cm=0:0.02", "--fix=cm=0.005"] {
+        call(&["--model", "leaf", "--prospect", "PRO", cm], &["prot + cbc", "--fix prot=0,cbc=0"]);
+    }
     call(&["--model", "leaf", "--bounds", "cw=0:10"], &["within 0:1", "did you mean 10 mg cm⁻²"]);
     call(&["--model", "prospect", "--bounds", "cm=0:20"], &["did you mean 20 g m⁻²"]);
     let two_step = ["--model", "leaf", "--method", "two-step", "--surface-from", "bands"];

@@ -202,6 +202,18 @@ impl Options {
                 _ => {}
             }
         }
+        let absorbs = |parameter: Parameter, where_nobody_says: bool| {
+            let treatment = treatments.iter().find(|(other, _)| *other == parameter).map(|(_, treatment)| treatment);
+            treatment.map_or(where_nobody_says, |treatment| *treatment != Treatment::Held(0.0))
+        };
+        if version == Version::Pro
+            && absorbs(Parameter::Cm, false)
+            && [Parameter::Prot, Parameter::Cbc].iter().any(|part| absorbs(*part, true))
+        {
+            return usage(
+                "cm: in PROSPECT-PRO dry matter is prot + cbc, and would absorb twice; speak of these, or say --fix prot=0,cbc=0".to_string(),
+            );
+        }
         Ok(Decided { version, car_per_cab: self.car_per_cab, treatments })
     }
 
