@@ -90,6 +90,11 @@ impl From<WriteError> for Failure {
     }
 }
 
+/// The remedy for a wavelength that was probably given in µm; nothing for others.
+fn micrometres(nm: f64) -> &'static str {
+    if nm > 0.0 && nm < 100.0 { " (did you mean nm? 0.55 µm is 550 nm)" } else { "" }
+}
+
 /// Refuses `-` as a folder: standard output holds one file, and a folder of that name helps nobody.
 fn folder(path: &std::path::Path) -> Result<(), Failure> {
     if path == std::path::Path::new("-") {

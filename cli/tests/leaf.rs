@@ -81,6 +81,14 @@ fn what_a_row_does_not_say_the_options_do() {
 }
 
 #[test]
+fn a_wavelength_in_micrometres_is_told_so() {
+    let rows = "n,sigma,n_struct,wavelength_nm,theta_s_deg,theta_v_deg,phi_v_deg\n1.5,0.3,1.5,0.55,30,30,180\n";
+    let folder = tempfile::tempdir().unwrap();
+    let points = file(folder.path(), "points.csv", rows);
+    fails(&["leaf", "--points", &points], 1, &["line 2, column 4", "did you mean nm"]);
+}
+
+#[test]
 fn an_impossible_row_is_named_with_its_column_and_nothing_is_printed() {
     let folder = tempfile::tempdir().unwrap();
     let names = "n,sigma,n_struct,cab,cm,wavelength_nm,theta_s_deg,theta_v_deg,phi_v_deg";

@@ -282,7 +282,7 @@ fn an_option_that_would_be_ignored_or_is_in_another_unit_is_refused() {
     for (options, parts) in [
         (&["--p1", "0.2,0"][..], "--diffuse p1"),
         (&["--noise-relative", "-1"], "standard deviations ≥ 0"),
-        (&["--wavelengths", "0.5:0.9:0.1"], "µm"),
+        (&["--wavelengths", "0.5:0.9:0.1"], "did you mean nm"),
         (&["--cw", "10"], "did you mean 10 mg cm⁻²"),
     ] {
         refused(&[&["--leaf", "beech"][..], options].concat(), &[parts]);

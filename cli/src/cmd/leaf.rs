@@ -213,7 +213,8 @@ impl<'a> Rows<'a> {
                 Error::Wavelength { .. } => "wavelength_nm",
                 _ => "n",
             };
-            at(name, error.to_string())
+            let hint = if let Error::Wavelength { value, .. } = error { super::micrometres(value) } else { "" };
+            at(name, format!("{error}{hint}"))
         };
 
         let [n, sigma, interior @ .., wavelength_nm, theta_s, theta_v, phi_v, gain, offset] = numbers;

@@ -216,8 +216,7 @@ enum Columns {
 impl Columns {
     fn new(arguments: &Arguments) -> Result<Self, Failure> {
         let usage = |error: Error| {
-            let micrometres = matches!(error, Error::Wavelength { value, .. } if value > 0.0 && value < 100.0);
-            let hint = if micrometres { " (did you mean nm? 0.55 µm is 550 nm)" } else { "" };
+            let hint = if let Error::Wavelength { value, .. } = error { super::micrometres(value) } else { "" };
             let option = if arguments.bands.is_some() { "--bands" } else { "--wavelengths" };
             Failure::Usage(format!("{option}: {error}{hint}"))
         };

@@ -233,12 +233,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !wavelengths_nm.is_sorted_by(|a, b| a < b) {
         return Err(Failure::Usage("--wavelengths: expected rising wavelengths, each once".to_string()));
     }
-    if let Some(nm) = wavelengths_nm.iter().find(|nm| **nm > 0.0 && **nm < 100.0) {
-        return Err(Failure::Usage(format!(
-            "--wavelengths: {nm} looks like µm: wavelengths are in nm, such as 480:879"
-        )));
-    }
-    let leaf = model.at(wavelengths_nm).map_err(usage)?;
+    let hint = wavelengths_nm.first().map_or("", |nm| super::micrometres(*nm));
+    let leaf = model.at(wavelengths_nm).map_err(|error| Failure::Usage(format!("{error}{hint}")))?;
 
     let instrument = instrument(arguments)?;
     let (mut noise, seed) = noise(arguments)?;
