@@ -342,6 +342,18 @@ fn options_that_mean_nothing_and_values_in_other_units_are_refused_with_a_remedy
 }
 
 #[test]
+fn a_single_value_has_neither_infinities_nor_a_condition_number_in_its_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let pixel = "# quantity: brf\ntheta_s_deg,30\ntheta_v_deg,0\nphi_v_deg,0\n550,0.1\n";
+    let (input, out) = (file(folder.path(), "pixel.csv", pixel), folder.path().join("out"));
+    let output = leafbrdf(&["fit", &input, "--model", "leaf", "-o", out.to_str().unwrap()]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{message}");
+    assert!(message.contains("R2 undefined") && !message.contains("e307") && !message.contains("inf"), "{message}");
+    assert_eq!(cell(&leaves(&out), "r2"), "");
+}
+
+#[test]
 fn wavelengths_that_prospect_does_not_know_fail_by_name_and_the_others_are_done() {
     let folder = tempfile::tempdir().unwrap();
     let good = measured(folder.path(), "good.csv");

@@ -222,12 +222,13 @@ impl LeafOutcome {
                 Some(format!("{} {}{error}", NAMES[i], brief(self.value(i)?)))
             })
             .collect();
+        // a single value has no spread that could be explained
+        let r2 = if self.fit.r2.is_finite() { format!("{:.4}", self.fit.r2) } else { "undefined".to_string() };
         format!(
-            "{} bands, {}, rmse {:.3e} sr^-1, R2 {:.4}",
+            "{} bands, {}, rmse {:.3e} sr^-1, R2 {r2}",
             self.fit.wavelengths_nm.len(),
             numbers.join(", "),
-            self.fit.rmse,
-            self.fit.r2
+            self.fit.rmse
         )
     }
 

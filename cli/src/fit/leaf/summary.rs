@@ -18,6 +18,8 @@ use crate::measurement::Measurement;
 const AMBIGUOUS: f64 = 1.1;
 /// From this condition number on (scaled to unit diagonal) errors of parameters lean on each other.
 const ILL_CONDITIONED: f64 = 1e4;
+/// From this one on the matrix is singular as far as doubles tell.
+const SINGULAR: f64 = 1e15;
 
 impl LeafOutcome {
     /// Writes `summary.json` into a folder, whole or not at all.
@@ -295,7 +297,11 @@ impl LeafOutcome {
             let value = fit.x[i] * unit(i);
             warnings.push(format!("{} sits at its bound {value}: the data ask for a value beyond it", NAMES[i]));
         }
-        if fit.condition > ILL_CONDITIONED && fit.condition.is_finite() {
+        if fit.condition > SINGULAR {
+            warnings.push(
+                "some parameters are not known apart, or not at all: the condition number is beyond 1e15".to_string(),
+            );
+        } else if fit.condition > ILL_CONDITIONED {
             warnings.push(format!(
                 "condition number {:.0e}: some parameters are only known together, see the correlations",
                 fit.condition
