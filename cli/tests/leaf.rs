@@ -324,6 +324,8 @@ fn options_that_mean_nothing_and_values_in_other_units_are_refused_with_a_remedy
     call(&["--model", "leaf", "--free", "cab", "--fix", "cab=40"], &["cab is free and fixed"]);
     call(&["--model", "leaf", "--prospect", "5B", "--fix", "cant=2"], &["5B"]);
     call(&["--model", "leaf", "--n-prior"], &["--n-prior"]);
+    call(&["--model", "leaf", "--hold", "cab=40"], &["--fix"]);
+    call(&["--model", "leaf", "--fix", "n=1.5"], &["--hold"]);
     for cm in ["--bounds=cm=0:0.02", "--fix=cm=0.005"] {
         call(&["--model", "leaf", "--prospect", "PRO", cm], &["prot + cbc", "--fix prot=0,cbc=0"]);
     }

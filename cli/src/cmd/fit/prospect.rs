@@ -10,6 +10,7 @@ use leafbrdf_fit::Interval;
 use leafbrdf_fit::hemispherical::{Free, default_free};
 use leafbrdf_fit::leaf::parameters::place;
 use leafbrdf_fit::leaf::{Prior, Treatment, default_bounds};
+use leafbrdf_fit::surface;
 use leafbrdf_prospect::{Error, LeafParams, Parameter, Prospect, Version, table};
 
 use super::super::Failure;
@@ -70,7 +71,9 @@ impl FromStr for Name {
     fn from_str(text: &str) -> Result<Self, String> {
         Parameter::ALL.into_iter().find(|parameter| parameter.name() == text.trim()).map(Name).ok_or_else(|| {
             let names = Parameter::ALL.map(Parameter::name).join(", ");
-            format!("{text:?} is no parameter: expected one of {names}")
+            let of_surface = surface::NAMES.contains(&text.trim());
+            let remedy = if of_surface { "; the surface's are for --hold and --prior" } else { "" };
+            format!("{text:?} is no parameter: expected one of {names}{remedy}")
         })
     }
 }

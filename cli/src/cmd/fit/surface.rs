@@ -85,7 +85,12 @@ impl FromStr for Hold {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (place, value) = named(text, &NAMES)?;
+        let (place, value) = named(text, &parameters::NAMES)?;
+        if place >= PARAMETERS {
+            return Err(format!(
+                "{text:?}: --hold is for the surface; --fix holds a parameter of the interior, --gain and --offset those"
+            ));
+        }
         match value.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(Hold(place, value * unit(place))),
             _ => Err(format!("{text:?}: expected NAME=VALUE, such as n=1.45")),
