@@ -57,7 +57,15 @@ pub fn principal_plane(
     let (left, top, pitch_x, pitch_y) = (96.0, 92.0, WIDTH + 92.0, HEIGHT + LOW + 118.0);
     let width = left + pitch_x * (columns - 1) as f64 + WIDTH + 36.0;
     let bottom = top + pitch_y * (rows - 1) as f64 + HEIGHT + 14.0 + LOW;
-    let mut svg = Svg::new(width.max(720.0), bottom + 116.0, prefix, title, note);
+    let difference = |v: &[f64; 4]| v[1] - v[2];
+    let reach = |values: &[[f64; 4]]| {
+        let seen = values.iter().filter(|v| v[3] > 0.0).map(difference);
+        super::axes::round_up(seen.fold(1.05 * error, |most, residual| most.max(1.05 * residual.abs())))
+    };
+    // only values that were not fitted can lie there
+    let beyond = panels.iter().any(|(_, values)| values.iter().any(|v| difference(v).abs() > reach(values)));
+    let height = bottom + if beyond { 134.0 } else { 116.0 };
+    let mut svg = Svg::new(width.max(720.0), height, prefix, title, note);
     svg.text([24.0, 34.0], title, TextStyle { size: 18.0, bold: true, ..TextStyle::default() });
     let (curve, points) = (series(1), series(0));
     for (place, (cut, values)) in panels.iter().enumerate() {
@@ -87,9 +95,7 @@ pub fn principal_plane(
         svg.end();
         frame.axes(&mut svg, false, false);
 
-        let difference = |v: &[f64; 4]| v[1] - v[2];
-        let seen = values.iter().filter(|v| v[3] > 0.0).map(difference);
-        let reach = super::axes::round_up(seen.fold(1.05 * error, |most, residual| most.max(1.05 * residual.abs())));
+        let reach = reach(values);
         let mut y = Axis::exact("residual", Unit::PerSr, -reach, reach, 2);
         y.ticks = vec![-reach, 0.0, reach];
         let below = Frame { left: frame_left, top: frame_top + HEIGHT + 14.0, width: WIDTH, height: LOW, x, y };
@@ -97,7 +103,11 @@ pub fn principal_plane(
         svg.begin_clip(&below.outline(0.0));
         below.band(&mut svg, &[[-90.0, -error, error], [90.0, -error, error]], "#7a7f87");
         below.line(&mut svg, [[-90.0, 0.0], [90.0, 0.0]], HAIR);
-        marks(&mut svg, &below, values, difference);
+        svg.end();
+        // the largest residual stands at the edge: its disc is not cut
+        svg.begin_clip(&below.outline(4.0));
+        let inside: Vec<[f64; 4]> = values.iter().filter(|v| difference(v).abs() <= reach).copied().collect();
+        marks(&mut svg, &below, &inside, difference);
         svg.end();
         below.axes(&mut svg, true, false);
         if column == 0 {
@@ -114,6 +124,10 @@ pub fn principal_plane(
     svg.text([left + 288.0, y], "model", TextStyle { size: SMALL_PX, ..TextStyle::default() });
     svg.fill(&format!("M{} {}h36v12h-36Z", left + 356.0, y - 11.0), "#7a7f87", 0.25);
     svg.text([left + 400.0, y], "± RMSE", TextStyle { size: SMALL_PX, ..TextStyle::default() });
+    if beyond {
+        let style = TextStyle { size: SMALL_PX, ..TextStyle::default() };
+        svg.text([left, y + 42.0], "open residuals beyond the axis are left out", style);
+    }
     svg.text([left, y + 24.0], note, TextStyle { size: SMALL_PX, ..TextStyle::default() });
     Ok(svg.finish())
 }

@@ -88,7 +88,7 @@ pub fn valley(prefix: &str, title: &str, note: &str, values: &Values) -> Result<
     let variance = least / freedom;
     let reach = |p: usize| {
         let error = values.errors[p];
-        if error.is_finite() && error > 0.0 { 4.2 * error } else { 0.03 * values.fitted[p] }
+        if error.is_finite() && error > 0.0 { 5.0 * error } else { 0.03 * values.fitted[p] }
     };
     let around = |quantity: &str, p: usize, count: usize| {
         let (middle, reach) = (values.fitted[p], reach(p));
