@@ -177,6 +177,24 @@ fn several_leaves_get_a_folder_each_and_one_that_fails_stops_no_other() {
 }
 
 #[test]
+fn a_leaf_named_like_a_file_of_the_output_leaves_it_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut long = String::from("wavelength_nm,theta_s_deg,theta_v_deg,phi_v_deg,brf,sample\n");
+    for sample in ["leaves.csv", "figures"] {
+        for theta_v in [0, 10, 20, 30, 40, 50] {
+            writeln!(long, "550,30,{theta_v},180,0.1{theta_v},{sample}").unwrap();
+        }
+    }
+    fs::write(folder.path().join("odd.csv"), long).unwrap();
+    let output = run(folder.path(), &["fit", "odd.csv", "--model", "surface", "--plots", "-o", "out"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let leaves = rows(&folder.path().join("out/leaves.csv"));
+    assert_eq!([&leaves[0]["leaf"], &leaves[1]["leaf"]], ["leaves.csv", "figures"]);
+    assert!(folder.path().join("out/_leaves.csv/summary.json").exists());
+    assert!(folder.path().join("out/_figures/figures").is_dir());
+}
+
+#[test]
 fn two_leaves_of_one_name_do_not_overwrite_each_other() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("x")).unwrap();

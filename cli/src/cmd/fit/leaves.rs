@@ -32,6 +32,16 @@ pub struct Model<D> {
     pub bands: Option<fn(&D) -> usize>,
 }
 
+/// The folder of a leaf among several: its name, but for those of what stands beside the folders.
+fn folder_of(name: &str) -> String {
+    let folder = file_name(name);
+    if ["leaves.csv", "figures"].contains(&folder.to_ascii_lowercase().as_str()) {
+        format!("_{folder}")
+    } else {
+        folder
+    }
+}
+
 /// All leaves of all files, each under a name of its own; a file that cannot be read is one failed leaf.
 pub fn read<D>(
     arguments: &Arguments,
@@ -45,7 +55,7 @@ pub fn read<D>(
         match reader(path) {
             Ok(leaves) => inputs.extend(leaves.into_iter().map(|leaf| {
                 let name = name_of(&leaf).to_string();
-                let folder = file_name(&name);
+                let folder = folder_of(&name);
                 let data = match places.get(&folder) {
                     Some(other) => Err(format!(
                         "{file}: leaf {name} has the name of one in {other}, whose results it would overwrite: give one of them \
@@ -106,7 +116,7 @@ pub fn each<D: Sync + Send, O>(
     let one = |leaf: &Input<D>| -> Result<Told, String> {
         let data = leaf.data.as_ref().map_err(Clone::clone)?;
         let outcome = fit(data, &bar).map_err(|why| format!("{}: leaf {}: {why}", leaf.file, leaf.name))?;
-        let folder = if several { arguments.output.join(file_name(&leaf.name)) } else { arguments.output.clone() };
+        let folder = if several { arguments.output.join(folder_of(&leaf.name)) } else { arguments.output.clone() };
         fs::create_dir_all(&folder)
             .and_then(|()| write(outcome, &folder, data, &leaf.file))
             .map_err(|error| format!("{}: cannot be written: {error}", folder.display()))
