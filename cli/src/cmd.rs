@@ -109,7 +109,9 @@ impl Failure {
         if error.kind() == io::ErrorKind::BrokenPipe {
             return Failure::PipeClosed;
         }
-        let name = output.map_or_else(|| "standard output".to_string(), |path| path.display().to_string());
+        let name = output
+            .filter(|path| *path != std::path::Path::new("-"))
+            .map_or_else(|| "standard output".to_string(), |path| path.display().to_string());
         Failure::Failed(format!("{name}: cannot be written: {error}"))
     }
 }

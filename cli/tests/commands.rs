@@ -285,6 +285,19 @@ fn a_reader_that_goes_away_is_no_failure() {
 const WIDE: &str = "# species: Corylus avellana\n# quantity: brf\ntheta_s_deg,30,30\ntheta_v_deg,60,0\nphi_v_deg,180,0\n\
                     400,0.116,\n401,0.117,-0.002\n";
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_behind_standard_output_is_named_so() {
+    let brdf = ["brdf", "--n", "1.5", "--sigma", "0.3", "--theta-s", "10", "--theta-v", "20", "--phi-v", "180"];
+    for call in [&["simulate", "--leaf", "beech"][..], &[&brdf[..], &["-o", "-"]].concat(), &brdf] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let output = Command::new(env!("CARGO_BIN_EXE_leafbrdf")).args(call).stdout(full).output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{call:?}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(message.starts_with("error: standard output: cannot be written"), "{call:?}: {message}");
+    }
+}
+
 #[test]
 fn convert_goes_there_and_back() {
     let folder = tempfile::tempdir().unwrap();

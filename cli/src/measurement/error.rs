@@ -60,6 +60,7 @@ impl fmt::Display for WriteError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             WriteError::Unfit(why) => f.write_str(why),
+            WriteError::Io { file, error } if file == "-" => write!(f, "standard output: cannot be written: {error}"),
             WriteError::Io { file, error } => write!(f, "{file}: cannot be written: {error}"),
         }
     }
