@@ -30,7 +30,7 @@ pub use azimuth::Azimuth;
 pub use directions::{directions_from_bytes, read_directions};
 pub use error::{ReadError, WriteError};
 pub use header::Metadata;
-pub use read::{ReadOptions, read_bytes, read_path};
+pub use read::{ReadOptions, read_bytes, read_path, stem};
 pub use write::{WriteOptions, render, write_path};
 
 use std::f64::consts::PI;

@@ -294,6 +294,13 @@ fn a_leaf_of_which_no_band_can_be_fitted_fails_with_the_remedy() {
     let folder = tempfile::tempdir().unwrap();
     let two = "# quantity: brf\ntheta_s_deg,30,30\ntheta_v_deg,0,30\nphi_v_deg,0,180\n550,0.1,0.2\n600,0.1,0.2\n";
     fs::write(folder.path().join("two.csv"), two).unwrap();
+    fs::write(folder.path().join("none.csv.gz"), "").unwrap();
+    assert!(!run(folder.path(), &["fit", "none.csv.gz", "--model", "bands", "-o", "none"]).status.success());
+    assert_eq!(
+        rows(&folder.path().join("none/leaves.csv"))[0]["leaf"],
+        "none",
+        "as it would be called if it were read"
+    );
     let output = run(folder.path(), &["fit", "two.csv", "--model", "bands", "-o", "out"]);
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(stderr(&output).contains("no wavelength has the 3 values") && stderr(&output).contains("--hold n=1.5"));

@@ -72,8 +72,8 @@ impl Context<'_> {
     }
 }
 
-/// The file's name without folder and without the endings of data files.
-pub(crate) fn stem(path: &Path) -> String {
+/// The file's name without folder and without the endings of data files: what a leaf is called that has no name of its own.
+pub fn stem(path: &Path) -> String {
     if path == Path::new("-") {
         return "stdin".to_string();
     }

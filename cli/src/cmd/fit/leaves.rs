@@ -7,7 +7,7 @@ use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use leafbrdf::fit::{LeafRecord, LeafValues, Selected, Selection, write_records};
-use leafbrdf::measurement::{Measurement, ReadError, ReadOptions, read_path};
+use leafbrdf::measurement::{Measurement, ReadError, ReadOptions, read_path, stem};
 use leafbrdf::output::file_name;
 use rayon::prelude::*;
 
@@ -67,8 +67,7 @@ pub fn read<D>(
                 Input { name, file: file.clone(), data }
             })),
             Err(error) => {
-                let name = path.file_stem().map_or_else(|| file.clone(), |stem| stem.to_string_lossy().into_owned());
-                inputs.push(Input { name, file, data: Err(error.to_string()) });
+                inputs.push(Input { name: stem(path), file, data: Err(error.to_string()) });
             }
         }
     }
