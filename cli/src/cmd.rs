@@ -17,7 +17,7 @@ mod prospect;
 mod simulate;
 mod version;
 
-use std::io;
+use std::io::{self, Write};
 
 use clap::Subcommand;
 use leafbrdf::measurement::{ReadError, WriteError};
@@ -93,6 +93,18 @@ impl From<WriteError> for Failure {
 /// The remedy for a wavelength that was probably given in µm; nothing for others.
 fn micrometres(nm: f64) -> &'static str {
     if nm > 0.0 && nm < 100.0 { " (did you mean nm? 0.55 µm is 550 nm)" } else { "" }
+}
+
+/// Warns of chlorophyll that was probably given in mg cm⁻²: what is possible is not refused.
+fn warn_of_milligrams(cab: f64) {
+    if cab > 0.0 && cab < 0.2 {
+        let likely = (1e9 * cab).round() / 1e6;
+        // A courtesy: where standard error is closed, the results are there all the same.
+        let _ = writeln!(
+            io::stderr(),
+            "warning: cab = {cab} µg cm⁻² is hardly any chlorophyll: did you mean {cab} mg cm⁻² = {likely} µg cm⁻²?"
+        );
+    }
 }
 
 /// Refuses `-` as a folder: standard output holds one file, and a folder of that name helps nobody.

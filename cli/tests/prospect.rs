@@ -376,6 +376,15 @@ fn one_leaf_that_fails_stops_no_other_and_no_name_is_used_twice() {
 }
 
 #[test]
+fn chlorophyll_in_milligrams_is_warned_of_and_computed_all_the_same() {
+    let call = |cab: &str| leafbrdf_with(&["prospect", "--n-struct", "1.5", "--cab", cab, "--wavelengths", "680"], "");
+    let output = call("0.04");
+    let warning = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && warning.contains("0.04 mg cm⁻² = 40 µg cm⁻²"), "{warning}");
+    assert!(call("0").stderr.is_empty() && call("40").stderr.is_empty());
+}
+
+#[test]
 fn options_that_contradict_each_other_are_wrong_usage() {
     let folder = Folder::new(&[("a.csv", "wavelength_nm,reflectance\n550,0.1\n")]);
     for (more, part) in [

@@ -143,6 +143,7 @@ fn from_flags(arguments: &Arguments) -> Result<Leaf, Failure> {
     }
     let version = arguments.model.0;
     check(arguments, version, &leaf).map_err(|error| Failure::Usage(format!("{}: {error}", flag(error))))?;
+    super::warn_of_milligrams(leaf.cab);
     Ok(Leaf { version, leaf })
 }
 

@@ -297,6 +297,7 @@ fn model(arguments: &Arguments, preset: Option<&PresetLeaf>) -> Result<LeafModel
     for (parameter, value) in Parameter::ALL.into_iter().zip(given) {
         interior.set(parameter, value.unwrap_or(interior.get(parameter)));
     }
+    super::warn_of_milligrams(interior.cab);
     let diffuse = match arguments.diffuse {
         DiffuseName::Lambert if arguments.p1.is_some() => {
             return Err(Failure::Usage("--p1 is no part of --diffuse lambert: add --diffuse p1".to_string()));

@@ -154,6 +154,9 @@ impl Options {
             if !(*value >= lowest && *value <= highest) {
                 return usage(format!("--fix: {}", Error::Outside { parameter: *parameter, value: *value }));
             }
+            if *parameter == Parameter::Cab {
+                super::super::warn_of_milligrams(*value);
+            }
             treatments.push((*parameter, Treatment::Held(*value)));
         }
         for (place, Name(parameter)) in self.free.iter().enumerate() {
@@ -255,6 +258,9 @@ impl Options {
                 return usage(format!("--fix {} stands twice", parameter.name()));
             }
             held.set(*parameter, *value);
+            if *parameter == Parameter::Cab {
+                super::super::warn_of_milligrams(*value);
+            }
         }
         let fixed = |parameter: Parameter| self.fix.iter().any(|value| value.0 == parameter);
         let tied = |parameter: Parameter| parameter == Parameter::Car && self.car_per_cab.is_some();
