@@ -299,10 +299,16 @@ fn settle<T: Real, const P: usize, O: Objective<T, P>>(
         return (x, here, at_bound);
     }
     let there = objective.evaluate(&settled);
-    // within a hair of the bound the costs differ by rounding
-    if there.cost <= here.cost + T::lit(64.0) * T::EPSILON * here.cost {
-        (settled, there, at_bound)
-    } else {
-        (x, here, [AtBound::Free; P])
+    // within a hair of the bound the costs differ by rounding, which is larger where the cost was first looked at from afar: then
+    // it is looked at once more
+    let mut here = here;
+    for again in [true, false] {
+        if there.cost <= here.cost + T::lit(64.0) * T::EPSILON * here.cost {
+            return (settled, there, at_bound);
+        }
+        if again {
+            here = objective.evaluate(&x);
+        }
     }
+    (x, here, [AtBound::Free; P])
 }

@@ -182,6 +182,43 @@ fn results_stay_inside_the_bounds_and_bounds_are_reported() {
     }
 }
 
+/// In small boxes without noise, where the scan's corner is the minimum to the last digit: n or σ on its bound is held there.
+#[test]
+fn what_sits_on_a_bound_is_reported_there_in_corners_too() {
+    let mut random = Random(3);
+    let directions = hemisphere(30.0);
+    let mut corners = 0;
+    for _ in 0..2000 {
+        let y = brdf(&directions, truth(&mut random), Normalization::Bousquet2005);
+        let (n, sigma) = (random.uniform(1.05, 2.0), random.uniform(0.02, 0.5));
+        let bounds = BandBounds {
+            n: Interval::new(n, n + random.uniform(0.01, 2.0)),
+            sigma: Interval::new(sigma, sigma + random.uniform(0.01, 0.5)),
+            ..BandBounds::table_3()
+        };
+        let band = BandOptions { bounds, ..BandOptions::table_3() };
+        let fit = fit_one(&directions, &y, &LeafBandsOptions { band, ..LeafBandsOptions::default() });
+        let on = [(1, bounds.n), (2, bounds.sigma)].map(|(p, interval)| {
+            let (place, inwards) = match fit.parameters[p] {
+                x if x == interval.lower => (AtBound::Lower, 1e-5),
+                x if x == interval.upper => (AtBound::Upper, -1e-5),
+                _ => return false,
+            };
+            // do the data ask for a value beyond? k_L on a bound of its own makes a kink
+            let mut inside = fit.parameters;
+            inside[p] += inwards * (interval.upper - interval.lower);
+            let beyond = chi2(&directions, &y, inside, Normalization::Bousquet2005) > fit.chi2;
+            if beyond && fit.at_bound[0] == AtBound::Free {
+                assert_eq!(fit.at_bound[p], place, "{p} {fit:?} {bounds:?}");
+                assert_eq!(fit.standard_errors[p], None);
+            }
+            beyond
+        });
+        corners += u32::from(on == [true; 2]);
+    }
+    assert!(corners > 100, "{corners}");
+}
+
 #[test]
 fn the_result_is_never_worse_than_a_start_of_the_callers() {
     let mut random = Random(4);
