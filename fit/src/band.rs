@@ -13,7 +13,9 @@ use leafbrdf_core::{DirectionTerms, Real};
 
 use crate::FitError;
 
-pub use report::{BandFit, Identifiability, Valley};
+#[cfg(feature = "std")]
+pub(crate) use report::covariance;
+pub use report::{BandFit, Identifiability, Noise, Valley};
 pub use solve::{BandOptions, BandSolver, Start, Weights};
 
 /// What all bands share: the direction terms as three slices of one length, and nothing that depends on the wavelength.

@@ -1,5 +1,7 @@
 //! All bands of a leaf: the solver of `band` on the processor at hand, over threads, and a last look at the neighbours.
 
+mod errors;
+
 use std::vec;
 use std::vec::Vec;
 
@@ -7,7 +9,7 @@ use leafbrdf_core::{DirectionTerms, Geometry, Normalization, Portable};
 use rayon::prelude::*;
 
 use crate::band::scan::{GridSize, Scan, ScanTable};
-use crate::band::{Band, BandFit, BandOptions, BandSolver, Directions, Start};
+use crate::band::{Band, BandFit, BandOptions, BandSolver, Directions, Start, Weights};
 use crate::{AtBound, FitError, Identifiability};
 
 /// The number type of the host's solver: double precision with an exponential that vectorises.
@@ -63,6 +65,9 @@ pub type BandResult = Option<BandFit<f64>>;
 
 /// Fits k_L, n, σ at every wavelength (§4.2), in parallel over the threads of the current rayon pool.
 ///
+/// Where the sd are not known (`Weights::Relative`) and 20 bands or more have a result, standard errors know how large each direction's
+/// noise is, from neighbouring bands ([`Noise::ByDirection`](crate::band::Noise::ByDirection)); not those of a robust fit.
+///
 /// The result does not depend on the number of threads. `progress` is told how many bands have been done since the last call.
 ///
 /// # Errors
@@ -92,7 +97,10 @@ pub fn fit_bands(
     })?;
     neighbours(&leaf, &mut results)?;
     if options.robust {
+        // residuals of values that count less say nothing of the noise
         robust(&leaf, &mut results)?;
+    } else if options.band.weights == Weights::Relative {
+        errors::by_direction(&leaf, &mut results);
     }
     Ok(results)
 }

@@ -16,6 +16,8 @@ pub mod leaf;
 #[cfg(feature = "std")]
 mod leaf_bands;
 mod linear;
+#[cfg(feature = "std")]
+mod matrix;
 pub mod solver;
 pub mod surface;
 

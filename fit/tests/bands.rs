@@ -4,7 +4,7 @@ mod common;
 
 use common::{Random, brdf, chi2, geometry, hemisphere};
 use leafbrdf_core::{Dielectric, Geometry, Normalization, Surface};
-use leafbrdf_fit::band::Weights;
+use leafbrdf_fit::band::{Noise, Weights};
 use leafbrdf_fit::{
     AtBound, BandBounds, BandFit, BandOptions, FitError, Identifiability, Interval, LeafBandsOptions, LeafData, Start,
     fit_bands,
@@ -269,6 +269,113 @@ fn standard_errors_cover_the_truth_as_often_as_they_say() {
         let reported =
             fits.iter().flatten().map(|fit| fit.correlations[pair].unwrap()).sum::<f64>() / f64::from(trials);
         assert!((observed - reported).abs() < 0.05, "{pair}: {observed} {reported}");
+    }
+}
+
+/// A leaf whose k_L rises at the red edge, under a narrow peak.
+fn glossy(directions: &[Geometry<f64>], bands: usize) -> (Vec<f64>, [f64; 2], Vec<f64>) {
+    let [n, sigma] = [1.22, 0.078];
+    let k_l: Vec<f64> =
+        (0..bands).map(|band| 0.04 + 0.4 / (1.0 + (-(band as f64 - 0.5 * bands as f64) / 12.0).exp())).collect();
+    let y = k_l.iter().flat_map(|k_l| brdf(directions, [*k_l, n, sigma], Normalization::Bousquet2005)).collect();
+    (k_l, [n, sigma], y)
+}
+
+/// Shares of all bands whose parameter `p` lies within 1 and 1.96 standard errors of the truth.
+fn covered<'a>(fits: impl Iterator<Item = (&'a BandFit<f64>, f64)>, p: usize) -> [f64; 2] {
+    let z: Vec<f64> =
+        fits.map(|(fit, truth)| (fit.parameters[p] - truth).abs() / fit.standard_errors[p].unwrap()).collect();
+    [1.0, 1.96].map(|errors| z.iter().filter(|z| **z <= errors).count() as f64 / z.len() as f64)
+}
+
+/// Noise as large as the paper's RMSE, larger where more light comes from, values weighing the same (Eq. 11): 1 % and 0.003 sr⁻¹.
+#[test]
+fn a_noisy_peak_leaves_the_errors_of_a_leafs_bands_honest() {
+    let mut random = Random(21);
+    let directions: Vec<_> = [8.0, 21.0, 41.0, 60.0].into_iter().flat_map(hemisphere).collect();
+    let (k_l, [n, sigma], exact) = glossy(&directions, 400);
+    let mut all = Vec::new();
+    for _ in 0..8 {
+        let y: Vec<f64> = exact.iter().map(|y| y + (0.01 * y).hypot(0.003) * random.normal()).collect();
+        all.push((fit(&directions, &y, &LeafBandsOptions::default()), y));
+    }
+    let bands = || all.iter().flat_map(|(fits, _)| fits.iter().flatten().zip(&k_l));
+    assert!(bands().all(|(fit, _)| fit.noise == Noise::ByDirection));
+    let shares =
+        [0, 1, 2].map(|p| covered(bands().map(|(fit, k_l)| (fit, if p == 0 { *k_l } else { [n, sigma][p - 1] })), p));
+    // 3200 bands that share sizes of noise by the hundred: ±1 %
+    for (p, [one, two]) in shares.into_iter().enumerate() {
+        assert!((0.60..0.76).contains(&one) && (0.90..0.98).contains(&two), "parameter {p}: {one} {two}");
+    }
+    // each band by itself knows no better than that all directions are alike: what this is about
+    let (_, y) = &all[0];
+    let alone: Vec<_> = y
+        .chunks(directions.len())
+        .map(|y| fit_one(&directions, y, &LeafBandsOptions::default()))
+        .inspect(|fit| assert_eq!(fit.noise, Noise::Alike))
+        .collect();
+    let [one, two] = covered(alone.iter().map(|fit| (fit, sigma)), 2);
+    assert!(one < 0.6 && two < 0.9, "{one} {two}");
+}
+
+/// A misfit that all bands share is one draw a direction, however many bands look: there an error must not shrink, nor a
+/// direction that alone decides make it boundless.
+#[test]
+fn other_bands_make_no_error_smaller_and_none_absurd() {
+    let mut random = Random(22);
+    let directions = hemisphere(40.0);
+    let (_, _, exact) = glossy(&directions, 60);
+    for _ in 0..20 {
+        let misfit: Vec<f64> = directions.iter().map(|_| 0.004 * random.normal()).collect();
+        let y: Vec<f64> =
+            exact.iter().zip(misfit.iter().cycle()).map(|(y, misfit)| y + misfit + 1e-5 * random.normal()).collect();
+        let fits = fit(&directions, &y, &LeafBandsOptions::default());
+        for (y, together) in y.chunks(directions.len()).zip(fits.iter().flatten()) {
+            let alone = fit_one(&directions, y, &LeafBandsOptions::default());
+            assert_eq!(together.correlations, alone.correlations);
+            for p in 0..3 {
+                let (Some(together), Some(alone)) = (together.standard_errors[p], alone.standard_errors[p]) else {
+                    assert_eq!(together.standard_errors[p], alone.standard_errors[p]);
+                    continue;
+                };
+                assert!((1.0..40.0).contains(&(together / alone)), "{p}: {together} {alone}");
+            }
+        }
+    }
+}
+
+#[test]
+fn few_bands_known_standard_deviations_and_a_robust_fit_keep_the_errors_of_each_band_by_itself() {
+    let mut random = Random(23);
+    let directions = hemisphere(40.0);
+    let (_, _, exact) = glossy(&directions, 40);
+    let y: Vec<f64> = exact.iter().map(|y| y + (0.01 * y).hypot(0.003) * random.normal()).collect();
+    let sd: Vec<f64> = exact.iter().map(|y| (0.01 * y).hypot(0.003)).collect();
+    let known = LeafBandsOptions {
+        band: BandOptions { weights: Weights::Absolute, ..BandOptions::table_3() },
+        ..LeafBandsOptions::default()
+    };
+    let robust = LeafBandsOptions { robust: true, ..LeafBandsOptions::default() };
+    let width = directions.len();
+    for (bands, options, sd, noise) in [
+        (19, LeafBandsOptions::default(), None, Noise::Alike),
+        (40, robust, None, Noise::Alike),
+        (40, known, Some(&sd), Noise::Known),
+        (20, LeafBandsOptions::default(), None, Noise::ByDirection),
+    ] {
+        let run = |bands: core::ops::Range<usize>| {
+            let place = bands.start * width..bands.end * width;
+            let sd = sd.map(|sd| &sd[place.clone()]);
+            fit_bands(&LeafData { geometries: &directions, brdf: &y[place], sd }, &options, &|_| ()).unwrap()
+        };
+        for (band, together) in run(0..bands).into_iter().enumerate() {
+            let (together, alone) = (together.unwrap(), run(band..band + 1)[0].unwrap());
+            assert_eq!(together.noise, noise);
+            assert_eq!(together.parameters, alone.parameters);
+            if noise != Noise::ByDirection {
+                assert_eq!(together.standard_errors, alone.standard_errors);
+            }
+        }
     }
 }
 

@@ -199,8 +199,8 @@ impl Study {
         })?;
         writeln!(
             f,
-            "Eq. 11 counts all values alike; laurel's peak is noisier than the rest, so its errors come out too small."
+            "Eq. 11 counts all values alike, though laurel's peak is noisier than the rest; how noisy each direction is, the errors know"
         )?;
-        writeln!(f, "A long file with a column sd is weighted by 1/sd^2, which mends that.")
+        writeln!(f, "from the neighbouring bands. A long file with a column sd is weighted by 1/sd^2.")
     }
 }

@@ -80,6 +80,7 @@ impl Summary {
             "wavelengths_nm": wavelengths(&selected.wavelengths_nm),
             "theta_s_deg": selected.sources_deg(),
             "parameters": parameters,
+            "noise_of_standard_errors": fits.first().map(|(_, fit)| fit.noise.words()),
             "rmse": finite(rmse),
             "r2": finite(r2),
             "errors": {

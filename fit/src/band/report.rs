@@ -13,10 +13,13 @@ pub struct BandFit<T> {
     pub parameters: [T; 3],
     /// Standard errors of k_L, n, σ; `None` for a parameter at a bound (held there) or not identifiable.
     ///
-    /// They take every value's noise to be independent and, without sd, equally large. Where a peak is noisier than the rest and
-    /// two or three directions see it, those of n and σ are too small (49 and 80 % within 1 and 1.96 for a narrow peak, 1 % of the
-    /// value beside 0.003 sr⁻¹): a band has no second look at a direction to know better. Weights 1/sd² mend it.
+    /// They take every value's noise to be independent, and as large as [`noise`](Self::noise) says. A band by itself has no second
+    /// look at a direction: where a peak is noisier than the rest and two or three directions see it, errors of n and σ from its own
+    /// residuals are too small (49 and 80 % within 1 and 1.96 for a narrow peak, 1 % of the value beside 0.003 sr⁻¹). The other bands
+    /// of a leaf have ([`fit_bands`](crate::fit_bands)), and weights 1/sd² mend it too.
     pub standard_errors: [Option<T>; 3],
+    /// Where the size of the noise is known from.
+    pub noise: Noise,
     /// Correlations (k_L, n), (k_L, σ), (n, σ); `None` where either standard error is.
     pub correlations: [Option<T>; 3],
     /// χ² = Σ ω (BRDF_measured − BRDF_modelled)².
@@ -69,6 +72,31 @@ pub enum Weights {
     Absolute,
 }
 
+/// Where the standard errors of a band have the size of the noise from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Noise {
+    /// χ²/(values − free parameters) of this band, the same in all directions but for the weights.
+    Alike,
+    /// Each direction has a size of its own, known from the leaf's other bands; where it is larger, the error by
+    /// [`Alike`](Noise::Alike).
+    ByDirection,
+    /// The sd that came with the data ([`Weights::Absolute`]).
+    Known,
+}
+
+impl Noise {
+    /// In words, for files.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Noise::Alike => "one for all directions, from the band's own residuals",
+            Noise::ByDirection => {
+                "each direction's own, from neighbouring bands, or one for all directions where that gives the larger error"
+            }
+            Noise::Known => "the standard deviations of the data",
+        }
+    }
+}
+
 impl<T: Real> BandFit<T> {
     /// √(χ²/n_obs), in sr⁻¹ where every value counts once.
     pub fn rmse(&self) -> T {
@@ -81,6 +109,7 @@ impl<T: Real> BandFit<T> {
         BandFit {
             parameters: numbers(self.parameters),
             standard_errors: self.standard_errors.map(|x| x.map(T::to_f64)),
+            noise: self.noise,
             correlations: self.correlations.map(|x| x.map(T::to_f64)),
             chi2: self.chi2.to_f64(),
             n_obs: self.n_obs,
@@ -153,6 +182,10 @@ impl<T: Real> BandFit<T> {
         BandFit {
             parameters: [point.k_lambert, best.n, best.sigma],
             standard_errors,
+            noise: match weights {
+                Weights::Absolute => Noise::Known,
+                Weights::Relative => Noise::Alike,
+            },
             correlations: [correlation(0, 1), correlation(0, 2), correlation(1, 2)],
             chi2: point.cost,
             n_obs,
@@ -169,7 +202,7 @@ impl<T: Real> BandFit<T> {
 /// The inverse of the normal matrix. Where it is singular, n and σ (the lobe) are taken out one after the other, σ first: they
 /// are marked, and the rest keeps its errors.
 #[cfg_attr(feature = "std", inline(always))]
-fn covariance<T: Real>(normal: &[[T; 3]; 3], free: &[bool; 3]) -> ([[T; 3]; 3], [bool; 3]) {
+pub(crate) fn covariance<T: Real>(normal: &[[T; 3]; 3], free: &[bool; 3]) -> ([[T; 3]; 3], [bool; 3]) {
     let mut matrix = *normal;
     let mut singular = [false; 3];
     for out in [3, 2, 1, 0] {

@@ -1,6 +1,7 @@
 //! Small symmetric matrices over the surface's parameters.
 
 use super::super::model::PARAMETERS;
+pub(super) use crate::matrix::{dot, form, product, transposed};
 
 /// A matrix over all parameters; rows and columns of those that are not asked for are left alone.
 pub(super) type Matrix = [[f64; PARAMETERS]; PARAMETERS];
@@ -11,24 +12,6 @@ pub(super) const ZERO: Matrix = [[0.0; PARAMETERS]; PARAMETERS];
 
 pub(super) fn rescaled(m: &Matrix, scale: &Vector) -> Matrix {
     core::array::from_fn(|i| core::array::from_fn(|k| m[i][k] * scale[i] * scale[k]))
-}
-
-pub(super) fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    core::array::from_fn(|i| core::array::from_fn(|k| (0..PARAMETERS).map(|m| a[i][m] * b[m][k]).sum()))
-}
-
-pub(super) fn transposed(m: &Matrix) -> Matrix {
-    core::array::from_fn(|i| core::array::from_fn(|k| m[k][i]))
-}
-
-/// Σ a_i b_i.
-pub(super) fn dot(a: &Vector, b: &Vector) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// aᵀ M a.
-pub(super) fn form(m: &Matrix, a: &Vector) -> f64 {
-    m.iter().zip(a).map(|(row, a_i)| a_i * dot(row, a)).sum()
 }
 
 /// λ_max/λ_min of a positive definite matrix of unit diagonal, by power iteration on it and on its inverse.
