@@ -301,6 +301,36 @@ impl<'a> Cost<'a> {
         Ok(normal)
     }
 
+    /// Σ J Jᵀ r² over all values, whitened: what [`Normal::matrix`] times their variance is where all have the same, and is not where
+    /// some are noisier.
+    pub fn scatter(&mut self, x: &[f64; COUNT]) -> Result<[[f64; COUNT]; COUNT], leafbrdf_prospect::Error> {
+        let diffuse = self.diffuse(x, false)?;
+        let bands = diffuse.k.len();
+        let free: Vec<usize> = (0..COUNT).filter(|i| self.is_free(*i)).collect();
+        let lobes = Lobes::new(&self.model, x)?;
+        let mut scatter = [[0.0; COUNT]; COUNT];
+        for (direction, measured) in self.measured.brf.chunks_exact(bands.max(1)).enumerate() {
+            let Some(whitening) = self.whitening_of.get(direction).and_then(|i| self.whitenings.get(*i)) else { break };
+            let (residual, rest) = self.columns.split_at_mut(bands);
+            lobes.residual(direction, &diffuse.k, measured, residual);
+            whitening.apply(residual);
+            for (column, &i) in rest.chunks_exact_mut(bands).zip(&free) {
+                lobes.column(direction, i, &diffuse, column);
+            }
+            let columns = rest.get_mut(..free.len() * bands).unwrap_or_default();
+            whitening.apply_to_all(columns, bands);
+            columns
+                .chunks_exact_mut(bands)
+                .for_each(|column| column.iter_mut().zip(&*residual).for_each(|(j, r)| *j *= r));
+            for (column, &i) in columns.chunks_exact(bands).zip(&free) {
+                for (other, &k) in columns.chunks_exact(bands).zip(&free) {
+                    scatter[i][k] += dot(column, other);
+                }
+            }
+        }
+        Ok(scatter)
+    }
+
     /// The modelled reflectance, direction by direction.
     pub fn modelled(&mut self, x: &[f64; COUNT]) -> Result<Vec<f64>, leafbrdf_prospect::Error> {
         let diffuse = self.diffuse(x, false)?;

@@ -11,6 +11,7 @@ use super::parameters::{COUNT, Treatment, interior, place};
 use super::problem::{LeafError, Method};
 use super::recipe::{Interior, Recipe};
 use crate::bounds::AtBound;
+use crate::matrix::form;
 use crate::solver::Termination;
 
 /// What the data tell about a parameter.
@@ -322,6 +323,22 @@ pub(super) fn errors(
             covariance[i][j] = if size > 0.0 { factor * inverse[row][column] / size } else { 0.0 };
         }
     }
+    let mut growth = [1.0; COUNT];
+    if let Variance::Found(Scatter { n_obs, n_effective }) = variance
+        && n_effective > parameters
+    {
+        let scatter = cost.scatter(x)?;
+        // as above, what n_effective residuals tell less p
+        let correlated = n_obs as f64 / (n_effective - parameters);
+        for &i in &free {
+            // the row of A⁻¹: 0 for what is not free
+            let row = covariance[i].map(|c| c / factor);
+            let more = correlated * form(&scatter, &row) - factor * form(&normal.matrix, &row);
+            if more > 0.0 && covariance[i][i] > 0.0 {
+                growth[i] = (1.0 + more / covariance[i][i]).sqrt();
+            }
+        }
+    }
     // what is held moves the estimate by H⁻¹Jᵀ∂M per unit
     if let Some(sds) = held {
         let stated = covariance;
@@ -351,9 +368,14 @@ pub(super) fn errors(
         if knowledge[i] == Knowledge::Identified {
             if prior_share[i] > PRIOR_ONLY {
                 knowledge[i] = Knowledge::PriorOnly;
-            } else if !(covariance[i][i].sqrt() < width) {
+            } else if !(growth[i] * covariance[i][i].sqrt() < width) {
                 knowledge[i] = Knowledge::NotIdentifiable;
             }
+        }
+    }
+    for i in 0..COUNT {
+        for j in 0..COUNT {
+            covariance[i][j] *= growth[i] * growth[j];
         }
     }
     Ok(Errors { covariance, knowledge, prior_share, condition: largest / smallest.max(f64::MIN_POSITIVE) })
