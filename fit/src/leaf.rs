@@ -13,13 +13,17 @@
 //! | `recipe` | every constant of the recommended method, and where each comes from |
 //! | `parameters` | the leaf's parameters in one list, and the coordinates in which they are sought |
 //! | `residuals` | how errors of neighbouring wavelengths resemble each other |
-//! | `engine` | χ² of a leaf with exact derivatives |
-//! | `problem` | what was measured, what is sought |
-//! | `recommended`, `joint` | the methods |
-//! | `report` | standard errors, correlations, what the data cannot tell |
+//! | `engine`, `lobes` | χ² of a leaf with exact derivatives; what the surface makes of every direction |
+//! | `problem`, `error` | what was measured, what is sought; what cannot be |
+//! | `recommended`, `joint`, `found` | the methods; where their searches ended |
+//! | `report`, `errors` | what comes back; standard errors, correlations, what the data cannot tell |
 
 mod engine;
+mod error;
+mod errors;
+mod found;
 mod joint;
+mod lobes;
 pub mod parameters;
 mod problem;
 pub mod recipe;
@@ -27,9 +31,10 @@ mod recommended;
 mod report;
 mod residuals;
 
-pub use engine::dhrf;
+pub use error::LeafError;
+pub use lobes::dhrf;
 pub use parameters::{Prior, Treatment};
-pub use problem::{DirectionalData, LeafError, LeafOptions, Method, SurfaceFrom, default_bounds, fit};
+pub use problem::{DirectionalData, LeafOptions, Method, SurfaceFrom, default_bounds, fit};
 pub use recipe::{HeldSd, Interior, RECIPES, RECOMMENDED, Recipe, ShareRule};
 pub use report::{Knowledge, LeafFit, OtherLeaf, RecipeReport};
 pub use residuals::ResidualModel;

@@ -7,19 +7,23 @@
 //!
 //! Everything is in reflectance (π · BRDF). Directions are independent of each other, wavelengths as a [`ResidualModel`] says.
 
+mod diffuse;
+
 use std::vec;
 use std::vec::Vec;
 
-use leafbrdf_core::{Angle, DhrfGradient, DomainError, Grade, Illumination, Normalization, Surface};
-use leafbrdf_prospect::{Coupling, Jacobian, LeafParams, Link, Parameter, Prospect, TwoLayer};
+pub(super) use diffuse::{Diffuse, leaf_of};
 
-use super::parameters::{Axis, COUNT, GAIN, INTERIOR, OFFSET, Prior, Treatment, interior, place};
+use leafbrdf_prospect::{Coupling, Parameter, Prospect};
+
+use super::lobes::Lobes;
+use super::parameters::{Axis, COUNT, INTERIOR, Prior, Treatment, place};
 use super::recipe::Interior;
 use super::residuals::{ResidualModel, Whitening};
 use crate::bounds::Interval;
 use crate::solver::{Evaluation, Minimum, Objective, SolverOptions, minimize};
-use crate::surface::model::{N, PARAMETERS, SIGMA};
-use crate::surface::{DirectionValue, DirectionalModel, FacetKind, LeafModel};
+use crate::surface::LeafModel;
+use crate::surface::model::PARAMETERS;
 
 /// What a leaf is made of.
 #[derive(Clone, Copy, Debug)]
@@ -41,13 +45,6 @@ pub(super) struct Measured<'a> {
     pub brf: &'a [f64],
     /// Standard deviations; they multiply the white part of the residual model.
     pub sd: Option<&'a [f64]>,
-}
-
-/// k_L and its derivatives, over all bands.
-pub(super) struct Diffuse {
-    pub k: Vec<f64>,
-    /// One run of bands for each parameter; empty where the derivative is 0.
-    pub slopes: [Vec<f64>; COUNT],
 }
 
 /// Room that one search after the other uses.
@@ -165,83 +162,6 @@ impl<'a> Cost<'a> {
         !matches!(self.axes[i], Axis::Held(_))
     }
 
-    /// k_L with derivatives by the free parameters; with `held`, ∂k_L/∂N and ∂k_L/∂f too.
-    pub fn diffuse(&mut self, x: &[f64; COUNT], held: bool) -> Result<Diffuse, leafbrdf_prospect::Error> {
-        let model = self.model;
-        let view = model.prospect.view();
-        let bands = view.len();
-        let leaf = leaf_of(x);
-        let free: [bool; COUNT] = core::array::from_fn(|i| self.is_free(i));
-        let wanted: Vec<Parameter> = Parameter::ALL
-            .into_iter()
-            .filter(|one| self.is_free(place(*one)) || (held && *one == Parameter::NStruct))
-            .collect();
-        let Room { r, t, dr, dt, by_share, frozen } = &mut self.room;
-        let (dr, dt) = (&mut dr[..wanted.len() * bands], &mut dt[..wanted.len() * bands]);
-        let t_alpha = view.t_alpha();
-        let mut k = vec![0.0; bands];
-        match model.interior {
-            // nothing in it moves: what it was before
-            _ if *frozen && wanted.is_empty() && !held => {}
-            Interior::Plain => {
-                let room = Jacobian {
-                    reflectance: &mut *r,
-                    transmittance: &mut *t,
-                    d_reflectance: &mut *dr,
-                    d_transmittance: dt,
-                };
-                model.prospect.jacobian(&leaf, &wanted, room)?;
-            }
-            Interior::TwoLayer { upper_share } => {
-                let interior = TwoLayer::new(model.prospect, upper_share)?;
-                interior.jacobian(&leaf, &wanted, r, dr, held.then_some(&mut by_share[..]))?;
-                // as R of a leaf whose first surface is PROSPECT's
-                r.iter_mut().zip(t_alpha).for_each(|(r, t_alpha)| *r += 1.0 - t_alpha);
-            }
-        }
-        // a free interior is asked for again at other values
-        *frozen = wanted.is_empty();
-        let mut slopes = [const { Vec::new() }; COUNT];
-        let mut link = Link { dhrf_specular: 0.0, gain: x[GAIN], offset: x[OFFSET] };
-        let mut dhrf = DhrfGradient { value: 0.0, d_n: 0.0, d_sigma: 0.0 };
-        if let (Some(surface), true) = (model.surface, model.coupling.takes_surface()) {
-            dhrf = dhrf_at_zenith(&surface, x[N], x[SIGMA], Grade::E8)?;
-            link.dhrf_specular = dhrf.value;
-        }
-        let terms: Vec<_> =
-            r.iter().zip(t_alpha).map(|(r, t_alpha)| model.coupling.diffuse(*r, *t_alpha, &link)).collect();
-        for (k, term) in k.iter_mut().zip(&terms) {
-            *k = term.k_lambert;
-        }
-        for (parameter, column) in wanted.iter().zip(dr.chunks_exact(bands)) {
-            slopes[place(*parameter)] = column.iter().zip(&terms).map(|(d, term)| d * term.d_reflectance).collect();
-        }
-        let flat = |of: fn(&leafbrdf_prospect::DiffuseTerm<f64>) -> f64, factor: f64| -> Vec<f64> {
-            terms.iter().map(|term| factor * of(term)).collect()
-        };
-        if free[GAIN] {
-            slopes[GAIN] = flat(|term| term.d_gain, 1.0);
-        }
-        if free[OFFSET] {
-            slopes[OFFSET] = flat(|term| term.d_offset, 1.0);
-        }
-        if model.coupling.takes_surface() && model.surface.is_some() {
-            if free[N] {
-                slopes[N] = flat(|term| term.d_dhrf_specular, dhrf.d_n);
-            }
-            if free[SIGMA] {
-                slopes[SIGMA] = flat(|term| term.d_dhrf_specular, dhrf.d_sigma);
-            }
-        }
-        if held {
-            if matches!(model.interior, Interior::Plain) {
-                by_share.fill(0.0);
-            }
-            by_share.iter_mut().zip(&terms).for_each(|(d, term)| *d *= term.d_reflectance);
-        }
-        Ok(Diffuse { k, slopes })
-    }
-
     /// χ², score and normal matrix at x.
     pub fn normal(&mut self, x: &[f64; COUNT], held: bool) -> Result<Normal, leafbrdf_prospect::Error> {
         let diffuse = self.diffuse(x, held)?;
@@ -253,15 +173,9 @@ impl<'a> Cost<'a> {
         let pi = core::f64::consts::PI;
         for (direction, measured) in self.measured.brf.chunks_exact(bands.max(1)).enumerate() {
             let Some(whitening) = self.whitening_of.get(direction).and_then(|i| self.whitenings.get(*i)) else { break };
-            let (residual, rest) = self.columns.split_at_mut(bands);
-            lobes.residual(direction, &diffuse.k, measured, residual);
-            whitening.apply(residual);
+            let (residual, columns, extra) =
+                whitened(whitening, &lobes, &diffuse, (direction, measured), &free, &mut self.columns);
             normal.chi2 += residual.iter().map(|r| r * r).sum::<f64>();
-            for (column, &i) in rest.chunks_exact_mut(bands).zip(&free) {
-                lobes.column(direction, i, &diffuse, column);
-            }
-            let columns = rest.get_mut(..free.len() * bands).unwrap_or_default();
-            whitening.apply_to_all(columns, bands);
             let columns = &*columns;
             for (place, column) in columns.chunks_exact(bands).enumerate() {
                 let i = free[place];
@@ -271,7 +185,6 @@ impl<'a> Cost<'a> {
                 }
             }
             if held {
-                let (columns, extra) = rest.split_at_mut(free.len() * bands);
                 for kind in 0..3 {
                     let extra = &mut extra[..bands];
                     for (band, e) in extra.iter_mut().enumerate() {
@@ -311,14 +224,8 @@ impl<'a> Cost<'a> {
         let mut scatter = [[0.0; COUNT]; COUNT];
         for (direction, measured) in self.measured.brf.chunks_exact(bands.max(1)).enumerate() {
             let Some(whitening) = self.whitening_of.get(direction).and_then(|i| self.whitenings.get(*i)) else { break };
-            let (residual, rest) = self.columns.split_at_mut(bands);
-            lobes.residual(direction, &diffuse.k, measured, residual);
-            whitening.apply(residual);
-            for (column, &i) in rest.chunks_exact_mut(bands).zip(&free) {
-                lobes.column(direction, i, &diffuse, column);
-            }
-            let columns = rest.get_mut(..free.len() * bands).unwrap_or_default();
-            whitening.apply_to_all(columns, bands);
+            let (residual, columns, _) =
+                whitened(whitening, &lobes, &diffuse, (direction, measured), &free, &mut self.columns);
             columns
                 .chunks_exact_mut(bands)
                 .for_each(|column| column.iter_mut().zip(&*residual).for_each(|(j, r)| *j *= r));
@@ -395,149 +302,25 @@ impl Objective<f64, COUNT> for Cost<'_> {
     }
 }
 
-/// Shape and lobe of every direction, once for the leaf, or band by band where the index follows the table.
-enum Lobes {
-    /// A single diffuse reflectance: π s = 1, no lobe.
-    None(DirectionValue<f64>),
-    Shared(Vec<DirectionValue<f64>>),
-    Banded {
-        values: Vec<DirectionValue<f64>>,
-        directions: usize,
-        index: Vec<f64>,
-    },
-}
-
-impl Lobes {
-    fn new(model: &Model<'_>, x: &[f64; COUNT]) -> Result<Self, leafbrdf_prospect::Error> {
-        let outside = |_: DomainError| leafbrdf_prospect::Error::SurfaceIndex { value: x[N] };
-        let Some(surface) = &model.surface else {
-            let diffuse = core::f64::consts::FRAC_1_PI;
-            return Ok(Lobes::None(DirectionValue { diffuse, ..DirectionValue::dark() }));
-        };
-        let mut at: [f64; PARAMETERS] = core::array::from_fn(|i| x[i]);
-        let directions = surface.directions.len();
-        if !model.scaled_index {
-            let mut values = Vec::with_capacity(directions);
-            surface.derivatives(&at, |value| values.push(value)).map_err(outside)?;
-            return Ok(Lobes::Shared(values));
-        }
-        let view = model.prospect.view();
-        let index: Vec<f64> = (0..view.len()).map(|band| view.refractive_index(band).unwrap_or(1.0)).collect();
-        let mut values = Vec::with_capacity(directions * index.len());
-        for material in &index {
-            at[N] = x[N] * material;
-            surface.derivatives(&at, |value| values.push(value)).map_err(outside)?;
-        }
-        Ok(Lobes::Banded { values, directions, index })
+/// Residual and free columns of one direction, whitened, and the room behind them.
+fn whitened<'c>(
+    whitening: &Whitening,
+    lobes: &Lobes,
+    diffuse: &Diffuse,
+    (direction, measured): (usize, &[f64]),
+    free: &[usize],
+    room: &'c mut [f64],
+) -> (&'c mut [f64], &'c mut [f64], &'c mut [f64]) {
+    let bands = diffuse.k.len();
+    let (residual, rest) = room.split_at_mut(bands);
+    lobes.residual(direction, &diffuse.k, measured, residual);
+    whitening.apply(residual);
+    let (columns, extra) = rest.split_at_mut(free.len() * bands);
+    for (column, &i) in columns.chunks_exact_mut(bands).zip(free) {
+        lobes.column(direction, i, diffuse, column);
     }
-
-    #[inline(always)]
-    fn at(&self, direction: usize, band: usize) -> &DirectionValue<f64> {
-        match self {
-            Lobes::None(value) => value,
-            Lobes::Shared(values) => &values[direction],
-            Lobes::Banded { values, directions, .. } => &values[band * directions + direction],
-        }
-    }
-
-    /// Measured − modelled reflectance of one direction.
-    fn residual(&self, direction: usize, k: &[f64], measured: &[f64], residual: &mut [f64]) {
-        let pi = core::f64::consts::PI;
-        if let Lobes::Banded { .. } = self {
-            for (band, ((r, y), k)) in residual.iter_mut().zip(measured).zip(k).enumerate() {
-                let value = self.at(direction, band);
-                *r = y - pi * (k * value.diffuse + value.specular);
-            }
-            return;
-        }
-        let value = self.at(direction, 0);
-        let (shape, lobe) = (pi * value.diffuse, pi * value.specular);
-        for ((r, y), k) in residual.iter_mut().zip(measured).zip(k) {
-            *r = y - (k * shape + lobe);
-        }
-    }
-
-    /// ∂(modelled reflectance)/∂(parameter i) of one direction.
-    fn column(&self, direction: usize, i: usize, diffuse: &Diffuse, column: &mut [f64]) {
-        let pi = core::f64::consts::PI;
-        if i < PARAMETERS {
-            if let Lobes::Banded { .. } = self {
-                for (band, (c, k)) in column.iter_mut().zip(&diffuse.k).enumerate() {
-                    let value = self.at(direction, band);
-                    *c = pi * (k * value.d_diffuse[i] + self.index_scale(i, band) * value.d_specular[i]);
-                }
-            } else {
-                let value = self.at(direction, 0);
-                let (shape, lobe) = (pi * value.d_diffuse[i], pi * value.d_specular[i]);
-                for (c, k) in column.iter_mut().zip(&diffuse.k) {
-                    *c = k * shape + lobe;
-                }
-            }
-        } else {
-            column.fill(0.0);
-        }
-        // through k_L; empty where it does not depend on this parameter
-        let slopes = &diffuse.slopes[i];
-        if let Lobes::Banded { .. } = self {
-            for (band, (c, slope)) in column.iter_mut().zip(slopes).enumerate() {
-                *c += pi * self.at(direction, band).diffuse * slope;
-            }
-        } else {
-            let shape = pi * self.at(direction, 0).diffuse;
-            for (c, slope) in column.iter_mut().zip(slopes) {
-                *c += shape * slope;
-            }
-        }
-    }
-
-    /// d(index)/d(coefficient) for n; 1 for everything else.
-    #[inline(always)]
-    fn index_scale(&self, parameter: usize, band: usize) -> f64 {
-        match self {
-            Lobes::Banded { index, .. } if parameter == N => index[band],
-            _ => 1.0,
-        }
-    }
-}
-
-/// DHRF_spec at normal incidence, with derivatives.
-pub(super) fn dhrf_at_zenith(
-    model: &LeafModel<'_, f64>,
-    n: f64,
-    sigma: f64,
-    grade: Grade,
-) -> Result<DhrfGradient<f64>, leafbrdf_prospect::Error> {
-    let outside = |_: DomainError| leafbrdf_prospect::Error::SurfaceIndex { value: n };
-    let zenith = Illumination::new(Angle::from_radians(0.0)).map_err(outside)?;
-    dhrf(model.facets, model.normalization, n, sigma, &zenith, grade).map_err(outside)
-}
-
-/// DHRF_spec of either kind of facets.
-pub fn dhrf(
-    facets: FacetKind,
-    normalization: Normalization,
-    n: f64,
-    sigma: f64,
-    source: &Illumination<f64>,
-    grade: Grade,
-) -> Result<DhrfGradient<f64>, DomainError> {
-    Ok(match facets {
-        FacetKind::Beckmann => {
-            Surface::new(n, sigma)?.with_normalization(normalization).dhrf_with_gradient(source, grade)
-        }
-        FacetKind::Ggx => Surface::ggx(n, sigma)?.with_normalization(normalization).dhrf_with_gradient(source, grade),
-    })
-}
-
-/// PROSPECT's parameters among the leaf's.
-pub(super) fn leaf_of(x: &[f64; COUNT]) -> LeafParams<f64> {
-    let mut leaf = LeafParams::with_n_struct(x[INTERIOR]);
-    for (value, i) in x.iter().zip(0..) {
-        if let Some(parameter) = interior(i) {
-            leaf.set(parameter, *value);
-        }
-    }
-    leaf
+    whitening.apply_to_all(columns, bands);
+    (residual, columns, extra)
 }
 
 /// dy/dλ per nm by the neighbours.
@@ -562,13 +345,14 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use leafbrdf_core::{DirectionVectors, Normalization};
+    use leafbrdf_core::{Angle, DirectionVectors, Normalization};
     use leafbrdf_prospect::Version;
 
-    use super::super::parameters::NAMES;
+    use super::super::parameters::{GAIN, NAMES, OFFSET};
     use super::super::problem::{default_bounds, tabulate, view};
     use super::*;
-    use crate::surface::DiffuseKind;
+    use crate::surface::model::{N, SIGMA};
+    use crate::surface::{DiffuseKind, FacetKind};
 
     const NM: [f64; 7] = [450.0, 550.0, 710.0, 850.0, 1250.0, 1650.0, 2200.0];
 

@@ -6,12 +6,15 @@ use std::vec::Vec;
 use leafbrdf_prospect::{Coupling, Parameter};
 
 use super::engine::{Cost, Measured, Model};
+use super::error::LeafError;
+use super::errors::{self, Variance};
+use super::found::Found;
 use super::parameters::{COUNT, GAIN, INTERIOR, OFFSET, Treatment, interior};
 use super::problem::{
-    LEAST_DIRECTIONS, Leaf, LeafError, LeafOptions, Method, SurfaceFrom, UNSEEN_SURFACE, default_bounds, tabulate, view,
+    LEAST_DIRECTIONS, Leaf, LeafOptions, Method, SurfaceFrom, UNSEEN_SURFACE, default_bounds, tabulate, view,
 };
-use super::recommended::{Found, search_surface};
-use super::report::{self, Knowledge, LeafFit, Variance, absent};
+use super::recommended::search_surface;
+use super::report::{Knowledge, LeafFit, absent};
 use super::residuals::ResidualModel;
 use crate::bounds::Interval;
 use crate::hemispherical;
@@ -212,9 +215,9 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
         whole.add(cost.search(&second.x, options.tolerance, options.max_iterations), &cost);
     }
     let at = whole.best.ok_or(LeafError::Model)?;
-    let spectrum = report::spectrum(&mut cost, &at.x)?;
-    let errors = report::errors(&mut cost, &at.x, &at.at_bound, &treatments, Variance::Found(spectrum.scatter), None)?;
-    let k_lambert_se = report::diffuse_errors(&mut cost, &at.x, &errors)?;
+    let spectrum = errors::spectrum(&mut cost, &at.x)?;
+    let errors = errors::errors(&mut cost, &at.x, &at.at_bound, &treatments, Variance::Found(spectrum.scatter), None)?;
+    let k_lambert_se = errors::diffuse_errors(&mut cost, &at.x, &errors)?;
     let mut standard_errors: [Option<f64>; COUNT] = core::array::from_fn(|i| errors.standard_error(i));
     let mut knowledge = errors.knowledge;
     for i in 0..PARAMETERS {

@@ -7,10 +7,13 @@ use std::vec::Vec;
 use leafbrdf_prospect::Coupling;
 
 use super::engine::{Cost, Measured, Model};
+use super::error::LeafError;
+use super::errors::{self, Errors, Variance};
+use super::found::Found;
 use super::parameters::{COUNT, GAIN, OFFSET, Treatment, interior, place};
-use super::problem::{LEAST_DIRECTIONS, Leaf, LeafError, LeafOptions, default_bounds, tabulate, view};
+use super::problem::{LEAST_DIRECTIONS, Leaf, LeafOptions, default_bounds, tabulate, view};
 use super::recipe::{Interior, Recipe};
-use super::report::{self, Errors, Knowledge, LeafFit, RecipeReport, Variance, absent};
+use super::report::{Knowledge, LeafFit, RecipeReport, absent};
 use super::residuals::ResidualModel;
 use crate::bounds::AtBound;
 use crate::solver::Termination;
@@ -163,7 +166,7 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
     }
     let mut best = found.best.ok_or(LeafError::Model)?;
     if let (Some(rule), Interior::TwoLayer { upper_share }) = (recipe.share_rule, recipe.interior) {
-        let errors = report::errors(&mut cost, &best.x, &best.at_bound, &treatments, Variance::Stated, None)?;
+        let errors = errors::errors(&mut cost, &best.x, &best.at_bound, &treatments, Variance::Stated, None)?;
         let (cm, log_sd) = dry_matter(&best.x, &errors);
         let upper_share = rule.share(upper_share, cm, log_sd);
         // C_m hardly depends on the share: once more is enough
@@ -181,7 +184,7 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
     }
     let interior = cost.model.interior;
     let HeldOff { sds } = HeldOff::new(recipe, &treatments);
-    let interior_errors = report::errors(&mut cost, &best.x, &best.at_bound, &treatments, Variance::Stated, Some(sds))?;
+    let interior_errors = errors::errors(&mut cost, &best.x, &best.at_bound, &treatments, Variance::Stated, Some(sds))?;
     let modelled = cost.modelled(&best.x)?;
     let report = RecipeReport {
         recipe,
@@ -224,69 +227,6 @@ impl HeldOff {
             ],
         }
     }
-}
-
-/// The searches so far.
-#[derive(Default)]
-pub(super) struct Found {
-    pub best: Option<At>,
-    pub second: Option<At>,
-    costs: Vec<f64>,
-    pub iterations: u32,
-}
-
-/// Where a search ended.
-#[derive(Clone, Copy)]
-pub(super) struct At {
-    pub x: [f64; COUNT],
-    pub cost: f64,
-    pub at_bound: [AtBound; COUNT],
-    pub termination: Termination,
-}
-
-impl Found {
-    pub fn add(&mut self, minimum: crate::solver::Minimum<f64, COUNT>, cost: &Cost<'_>) {
-        let at = At {
-            x: cost.parameters(&minimum.x).0,
-            cost: minimum.evaluation.cost,
-            at_bound: minimum.at_bound,
-            termination: minimum.termination,
-        };
-        self.iterations += minimum.iterations;
-        self.costs.push(at.cost);
-        if !(at.cost < f64::MAX) {
-            return;
-        }
-        let Some(leader) = self.best else {
-            self.best = Some(at);
-            return;
-        };
-        let (winner, loser) = if at.cost < leader.cost { (at, leader) } else { (leader, at) };
-        self.best = Some(winner);
-        if distinct(&winner, &loser, cost) && self.second.is_none_or(|other| loser.cost < other.cost) {
-            self.second = Some(loser);
-        }
-    }
-
-    pub fn starts(&self) -> u32 {
-        self.costs.len() as u32
-    }
-
-    /// Starts that arrived within 0.1 % of the best cost.
-    pub fn agreeing(&self) -> u32 {
-        let best = self.best.map_or(f64::NAN, |best| best.cost);
-        // squares of rounding errors, where a fit is perfect, are all alike
-        self.costs.iter().filter(|cost| **cost <= 1.001 * best + 1e-12).count() as u32
-    }
-}
-
-/// Do two minima differ in a parameter by more than a hundredth of its way?
-fn distinct(a: &At, b: &At, cost: &Cost<'_>) -> bool {
-    let (u, w) = (cost.coordinates(&a.x), cost.coordinates(&b.x));
-    (0..COUNT).any(|i| {
-        let width = cost.axes[i].bounds().width();
-        (u[i] - w[i]).abs() > 0.01 * width
-    })
 }
 
 /// One finished step.
@@ -358,9 +298,9 @@ fn with_surface(
     }
     // without a surface the interior step's own gain and offset stand
     let (x, at_bound) = at.best.map_or((step.x, [AtBound::Free; COUNT]), |best| (best.x, best.at_bound));
-    let spectrum = report::spectrum(&mut cost, &x)?;
-    let errors = report::errors(&mut cost, &x, &at_bound, &treatments, Variance::Found(spectrum.scatter), None)?;
-    let k_lambert_se = report::diffuse_errors(&mut cost, &x, &errors)?;
+    let spectrum = errors::spectrum(&mut cost, &x)?;
+    let errors = errors::errors(&mut cost, &x, &at_bound, &treatments, Variance::Found(spectrum.scatter), None)?;
+    let k_lambert_se = errors::diffuse_errors(&mut cost, &x, &errors)?;
     recipe_report.diffuse_gain = x[GAIN];
     recipe_report.diffuse_offset = x[OFFSET];
 

@@ -1,0 +1,345 @@
+//! Standard errors that do not count one misfit 25,000 times, and know how large each direction's noise is.
+
+use std::vec;
+use std::vec::Vec;
+
+use super::engine::Cost;
+use super::error::LeafError;
+use super::parameters::{COUNT, Treatment};
+use super::report::Knowledge;
+use crate::bounds::AtBound;
+use crate::matrix::form;
+
+/// Errors of the free parameters of one search.
+#[derive(Clone, Debug)]
+pub(super) struct Errors {
+    pub covariance: [[f64; COUNT]; COUNT],
+    pub knowledge: [Knowledge; COUNT],
+    pub prior_share: [f64; COUNT],
+    pub condition: f64,
+}
+
+impl Errors {
+    pub fn standard_error(&self, i: usize) -> Option<f64> {
+        matches!(self.knowledge[i], Knowledge::Identified | Knowledge::PriorOnly)
+            .then(|| self.covariance[i][i].max(0.0).sqrt())
+    }
+}
+
+/// What is left over, as [`Errors`] need it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scatter {
+    pub n_obs: usize,
+    pub n_effective: f64,
+}
+
+/// Residuals of one direction after the other: how much neighbours resemble each other.
+pub(super) fn scatter(measured: &[f64], modelled: &[f64], bands: usize) -> Scatter {
+    let (mut lagged, mut paired, mut n_obs, mut directions) = (0.0, 0.0, 0, 0.0);
+    for (y, f) in measured.chunks_exact(bands.max(1)).zip(modelled.chunks_exact(bands.max(1))) {
+        let mut before: Option<f64> = None;
+        directions += f64::from(u8::from(y.iter().any(|y| !y.is_nan())));
+        for (y, f) in y.iter().zip(f) {
+            if y.is_nan() {
+                before = None;
+                continue;
+            }
+            n_obs += 1;
+            let r = y - f;
+            if let Some(before) = before {
+                lagged += before * r;
+                paired += 0.5 * (before * before + r * r);
+            }
+            before = Some(r);
+        }
+    }
+    let rho = if paired > 0.0 { f64::clamp(lagged / paired, 0.0, 1.0) } else { 0.0 };
+    let n = n_obs as f64;
+    // residuals that are the same at all wavelengths are still one draw a direction
+    Scatter { n_obs, n_effective: (n * (1.0 - rho) / (1.0 + rho)).clamp(directions, n) }
+}
+
+/// How large the residuals are taken to be.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Variance {
+    /// As the residual model says: the recipe's.
+    Stated,
+    /// As they are found, neighbours counting as fewer; at least as the standard deviations of the data say.
+    Found(Scatter),
+}
+
+/// Standard errors at `x`.
+///
+/// - `held`: what is held and may be off, with its standard deviation: ln N, f, the wavelength scale.
+pub(super) fn errors(
+    cost: &mut Cost<'_>,
+    x: &[f64; COUNT],
+    at_bound: &[AtBound; COUNT],
+    treatments: &[Treatment; COUNT],
+    variance: Variance,
+    held: Option<[f64; 3]>,
+) -> Result<Errors, LeafError> {
+    let normal = cost.normal(x, held.is_some())?;
+    let mut knowledge: [Knowledge; COUNT] = core::array::from_fn(|i| match (treatments[i].is_free(), at_bound[i]) {
+        (false, _) => Knowledge::Held,
+        (true, AtBound::Free) => Knowledge::Identified,
+        (true, _) => Knowledge::AtBound,
+    });
+    let free: Vec<usize> = (0..COUNT).filter(|&i| knowledge[i] == Knowledge::Identified).collect();
+    let mut matrix: Vec<Vec<f64>> = free.iter().map(|&i| free.iter().map(|&j| normal.matrix[i][j]).collect()).collect();
+    let mut prior_precision = [0.0; COUNT];
+    for (row, &i) in free.iter().enumerate() {
+        if let Some(prior) = cost.priors[i] {
+            prior_precision[i] = cost.prior_weight * prior.misfit(x[i]).1.powi(2);
+            matrix[row][row] += prior_precision[i];
+        }
+    }
+    let scale: Vec<f64> = (0..free.len()).map(|i| matrix[i][i].max(0.0).sqrt()).collect();
+    let scaled: Vec<Vec<f64>> = (0..free.len())
+        .map(|i| {
+            let of = |j: usize| {
+                let size = scale[i] * scale[j];
+                if size > 0.0 { matrix[i][j] / size } else { f64::from(u8::from(i == j)) }
+            };
+            (0..free.len()).map(of).collect()
+        })
+        .collect();
+    let (values, vectors) = eigen(scaled);
+    let largest = values.iter().copied().fold(0.0, f64::max);
+    let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    // rounding of the normal matrix
+    let least = 1e-13 * largest;
+    let mut inverse = vec![vec![0.0; free.len()]; free.len()];
+    for (value, vector) in values.iter().zip(&vectors) {
+        if *value > least {
+            for i in 0..free.len() {
+                for j in 0..free.len() {
+                    inverse[i][j] += vector[i] * vector[j] / value;
+                }
+            }
+        } else {
+            for (i, v) in vector.iter().enumerate() {
+                if v * v > 1e-3 {
+                    knowledge[free[i]] = Knowledge::NotIdentifiable;
+                }
+            }
+        }
+    }
+    let parameters = free.len() as f64;
+    let factor = match variance {
+        Variance::Stated => 1.0,
+        Variance::Found(Scatter { n_obs, n_effective }) => {
+            if !(n_effective > parameters) {
+                free.iter().for_each(|&i| knowledge[i] = Knowledge::NoDegreesOfFreedom);
+                1.0
+            } else {
+                let n = n_obs as f64;
+                // χ²/(n_eff − p) · n_eff/n is the variance of one residual, and n/n_eff residuals tell the same
+                let found = normal.chi2 / n * n_effective / (n_effective - parameters);
+                let known = if cost.measured.sd.is_some() { 1.0 } else { 0.0 };
+                found.max(known) * n / n_effective
+            }
+        }
+    };
+    let mut covariance = [[0.0; COUNT]; COUNT];
+    for (row, &i) in free.iter().enumerate() {
+        for (column, &j) in free.iter().enumerate() {
+            let size = scale[row] * scale[column];
+            covariance[i][j] = if size > 0.0 { factor * inverse[row][column] / size } else { 0.0 };
+        }
+    }
+    let mut growth = [1.0; COUNT];
+    if let Variance::Found(Scatter { n_obs, n_effective }) = variance
+        && n_effective > parameters
+    {
+        let scatter = cost.scatter(x)?;
+        // as above, what n_effective residuals tell less p
+        let correlated = n_obs as f64 / (n_effective - parameters);
+        for &i in &free {
+            // the row of A⁻¹: 0 for what is not free
+            let row = covariance[i].map(|c| c / factor);
+            let more = correlated * form(&scatter, &row) - factor * form(&normal.matrix, &row);
+            if more > 0.0 && covariance[i][i] > 0.0 {
+                growth[i] = (1.0 + more / covariance[i][i]).sqrt();
+            }
+        }
+    }
+    // what is held moves the estimate by H⁻¹Jᵀ∂M per unit
+    if let Some(sds) = held {
+        let stated = covariance;
+        for (column, sd) in normal.held.iter().zip(sds) {
+            let moved: [f64; COUNT] =
+                core::array::from_fn(|i| sd * (0..COUNT).map(|j| stated[i][j] * column[j]).sum::<f64>());
+            for i in 0..COUNT {
+                for j in 0..COUNT {
+                    covariance[i][j] += moved[i] * moved[j];
+                }
+            }
+        }
+    }
+    let mut prior_share = [0.0; COUNT];
+    for &i in &free {
+        if scale[free.iter().position(|&other| other == i).unwrap_or(0)] == 0.0 {
+            knowledge[i] = Knowledge::NotIdentifiable;
+        }
+        if prior_precision[i] > 0.0 {
+            // the posterior's own variance, in units of the prior's
+            prior_share[i] = (covariance[i][i] * prior_precision[i] / factor).min(1.0);
+        }
+        let width = match treatments[i] {
+            Treatment::Free { bounds, .. } => bounds.width(),
+            Treatment::Held(_) => f64::INFINITY,
+        };
+        if knowledge[i] == Knowledge::Identified {
+            if prior_share[i] > PRIOR_ONLY {
+                knowledge[i] = Knowledge::PriorOnly;
+            } else if !(growth[i] * covariance[i][i].sqrt() < width) {
+                knowledge[i] = Knowledge::NotIdentifiable;
+            }
+        }
+    }
+    for i in 0..COUNT {
+        for j in 0..COUNT {
+            covariance[i][j] *= growth[i] * growth[j];
+        }
+    }
+    Ok(Errors { covariance, knowledge, prior_share, condition: largest / smallest.max(f64::MIN_POSITIVE) })
+}
+
+/// More than this share of its prior variance left: the data have said next to nothing.
+const PRIOR_ONLY: f64 = 0.9;
+
+/// Eigenvalues and -vectors of a small symmetric matrix, by Jacobi's rotations.
+fn eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let n = a.len();
+    let mut vectors: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();
+    for _ in 0..60 {
+        let off: f64 = (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| a[i][j] * a[i][j]).sum();
+        if off < 1e-30 {
+            break;
+        }
+        for p in 0..n {
+            for q in p + 1..n {
+                if a[p][q].abs() < 1e-300 {
+                    continue;
+                }
+                let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+                let t = if theta == 0.0 { 1.0 } else { t };
+                let c = 1.0 / (t * t + 1.0).sqrt();
+                let s = t * c;
+                for k in 0..n {
+                    let (x, y) = (a[k][p], a[k][q]);
+                    (a[k][p], a[k][q]) = (c * x - s * y, s * x + c * y);
+                }
+                for k in 0..n {
+                    let (x, y) = (a[p][k], a[q][k]);
+                    (a[p][k], a[q][k]) = (c * x - s * y, s * x + c * y);
+                }
+                for vector in &mut vectors {
+                    let (x, y) = (vector[p], vector[q]);
+                    (vector[p], vector[q]) = (c * x - s * y, s * x + c * y);
+                }
+            }
+        }
+    }
+    let values = (0..n).map(|i| a[i][i]).collect();
+    // column i of the rotations belongs to value i
+    let columns = (0..n).map(|i| vectors.iter().map(|row| row[i]).collect()).collect();
+    (values, columns)
+}
+
+/// The spectrum of k_L with errors, and the misfit wavelength by wavelength.
+pub(super) struct Spectrum {
+    pub k_lambert: Vec<f64>,
+    pub squares: Vec<(f64, usize)>,
+    pub rmse: f64,
+    pub r2: f64,
+    pub scatter: Scatter,
+}
+
+/// k_L and residuals at x. Values are reflectances, results are in sr⁻¹.
+pub(super) fn spectrum(cost: &mut Cost<'_>, x: &[f64; COUNT]) -> Result<Spectrum, LeafError> {
+    let modelled = cost.modelled(x)?;
+    let diffuse = cost.diffuse(x, false)?;
+    let bands = diffuse.k.len();
+    let measured = cost.measured.brf;
+    let inv_pi = core::f64::consts::FRAC_1_PI;
+    let mut squares = vec![(0.0, 0); bands];
+    let (mut sum, mut count) = (0.0, 0_usize);
+    for (y, f) in measured.chunks_exact(bands).zip(modelled.chunks_exact(bands)) {
+        for ((y, f), (square, n)) in y.iter().zip(f).zip(&mut squares).filter(|((y, _), _)| !y.is_nan()) {
+            *square += ((y - f) * inv_pi).powi(2);
+            *n += 1;
+            sum += y * inv_pi;
+            count += 1;
+        }
+    }
+    let mean = sum / count as f64;
+    let spread: f64 = measured.iter().filter(|y| !y.is_nan()).map(|y| (y * inv_pi - mean).powi(2)).sum();
+    let total: f64 = squares.iter().map(|(square, _)| square).sum();
+    Ok(Spectrum {
+        scatter: scatter(measured, &modelled, bands),
+        k_lambert: diffuse.k,
+        squares,
+        rmse: (total / count as f64).sqrt(),
+        r2: 1.0 - total / spread,
+    })
+}
+
+/// Standard errors of k_L from the covariance of what it is made of.
+pub(super) fn diffuse_errors(
+    cost: &mut Cost<'_>,
+    x: &[f64; COUNT],
+    errors: &Errors,
+) -> Result<Vec<Option<f64>>, LeafError> {
+    let diffuse = cost.diffuse(x, false)?;
+    let bands = diffuse.k.len();
+    let moving: Vec<usize> = (0..COUNT).filter(|&i| diffuse.slopes[i].len() == bands).collect();
+    let unknown = moving
+        .iter()
+        .any(|&i| matches!(errors.knowledge[i], Knowledge::NotIdentifiable | Knowledge::NoDegreesOfFreedom));
+    if unknown {
+        return Ok(vec![None; bands]);
+    }
+    Ok((0..bands)
+        .map(|band| {
+            let mut variance = 0.0;
+            for &i in &moving {
+                for &j in &moving {
+                    variance += diffuse.slopes[i][band] * errors.covariance[i][j] * diffuse.slopes[j][band];
+                }
+            }
+            Some(variance.max(0.0).sqrt())
+        })
+        .collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn eigenvectors_rebuild_their_matrix() {
+        let a = vec![vec![2.0, -0.3, 0.1], vec![-0.3, 1.0, 0.7], vec![0.1, 0.7, 0.5]];
+        let (values, vectors) = eigen(a.clone());
+        for i in 0..3 {
+            for j in 0..3 {
+                let rebuilt: f64 = values.iter().zip(&vectors).map(|(value, v)| value * v[i] * v[j]).sum();
+                assert!((rebuilt - a[i][j]).abs() < 1e-14);
+            }
+        }
+        assert!((values.iter().sum::<f64>() - 3.5).abs() < 1e-14);
+    }
+
+    #[test]
+    fn alternating_residuals_count_each_and_smooth_ones_as_few() {
+        let measured = [0.0; 400];
+        let alternating: Vec<f64> = (0..400).map(|i| if i % 2 == 0 { 0.01 } else { -0.01 }).collect();
+        let blocks: Vec<f64> = (0..400).map(|i| if (i / 20) % 2 == 0 { 0.01 } else { -0.01 }).collect();
+        assert_eq!(scatter(&measured, &alternating, 400).n_effective, 400.0);
+        let rho = 1.0 - 38.0 / 399.0;
+        // 19 changes of sign among 399 pairs
+        assert!((scatter(&measured, &blocks, 400).n_effective - 400.0 * (1.0 - rho) / (1.0 + rho)).abs() < 1e-9);
+    }
+}
