@@ -41,6 +41,21 @@ fn one_surface_is_recovered_with_honest_standard_errors() {
     }
 }
 
+/// Two views see laurel's peak, and with equal weights the others cannot tell how noisy these are: other bands can.
+#[test]
+fn errors_of_a_narrow_noisy_peak_are_as_large_as_what_they_stand_for() {
+    let laurel = &presets()[0];
+    for estimator in [Estimator::Bands, Estimator::Joint] {
+        let recovery = recover(laurel, estimator, Conditions::PAPER, 1..61).unwrap();
+        for parameter in ["n", "sigma"] {
+            let score = recovery.score(parameter).unwrap();
+            // the mean of 60 squares of a standard normal number: 1 ± 0.18
+            let square = (score.rms_error / score.rms_se).powi(2);
+            assert!((square - 1.0).abs() < 3.0 * 0.18, "{estimator:?} {parameter}: {square}");
+        }
+    }
+}
+
 #[test]
 fn five_parameters_at_once_give_chlorophyll_within_2_micrograms() {
     for recovery in all(Estimator::Joint, true, 5) {
