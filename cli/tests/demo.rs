@@ -95,6 +95,8 @@ fn standard_errors_cover_the_truth_as_often_as_they_should_with_equal_weights_to
     }
     let covered = RUN.1.covered();
     assert!((covered - 0.683).abs() < 0.04, "{covered}");
+    let summary = fs::read_to_string(RUN.0.path().join("fit/laurel/summary.json")).unwrap();
+    assert!(summary.contains(leafbrdf_fit::band::Noise::ByDirection.words()), "{summary}");
 }
 
 #[test]

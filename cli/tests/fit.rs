@@ -287,6 +287,8 @@ fn too_few_values_in_a_band_are_said_and_the_other_bands_are_done() {
     let summary: serde_json::Value =
         serde_json::from_slice(&fs::read(folder.path().join("out/summary.json")).unwrap()).unwrap();
     assert_eq!(summary["values"]["left_out"]["missing"], 12);
+    // six bands cannot tell each direction's noise
+    assert_eq!(summary["noise_of_standard_errors"], leafbrdf_fit::band::Noise::Alike.words());
 }
 
 #[test]
