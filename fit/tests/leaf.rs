@@ -312,6 +312,29 @@ fn a_prior_pulls_by_its_width() {
     assert!(with(1e-4) < with(0.05) && with(0.05) < with(1.5));
 }
 
+// What is known beforehand has an error of its own, however large the misfit: a value that the prior decides has the prior's.
+#[test]
+fn a_value_known_beforehand_is_known_no_worse_afterwards() {
+    let mut leaf = Leaf::coupled(every(20), &PLANE, Coupling::Bousquet, interior());
+    // a misfit that k_L of single bands could follow and a leaf's contents cannot: the surface alone leaves nothing over
+    for (band, values) in leaf.brdf.chunks_exact_mut(PLANE.len()).enumerate() {
+        values.iter_mut().for_each(|y| *y += 5e-3 * (0.3 * band as f64).sin());
+    }
+    let leaf = leaf.with_noise(2e-4, 7);
+    let bounds = Interval::new(0.5, 200.0);
+    for sd in [1e-3, 1e-2, 0.1] {
+        let mut options = LeafOptions::new(Method::Joint);
+        let prior = Some(Prior::log(30.0, sd));
+        options.treatments = vec![(place(Parameter::Cab), Treatment::Free { bounds, prior })];
+        let fit = leaf.fit(&options).unwrap();
+        let error = fit.standard_errors[place(Parameter::Cab)].unwrap();
+        let known = sd * fit.interior().get(Parameter::Cab);
+        // a per cent for what noise by direction adds
+        assert!(error < 1.01 * known, "prior {known}, error {error}");
+        assert!(sd > 5e-3 || error > 0.95 * known, "prior {known}, error {error}");
+    }
+}
+
 #[test]
 fn missing_values_are_left_out_and_change_nothing_else() {
     let mut leaf = Leaf::coupled(every(20), &PLANE, Coupling::Bousquet, interior());

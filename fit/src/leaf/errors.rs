@@ -68,6 +68,29 @@ pub(super) enum Variance {
     Found(Scatter),
 }
 
+/// What the values that are worth fewer than they are many leave to judge the errors by.
+struct Freedom {
+    /// The variance of one residual, times how many of them tell the same.
+    factor: f64,
+    /// Values over degrees of freedom.
+    correlated: f64,
+}
+
+impl Freedom {
+    /// Every parameter counts as one, whatever is known of it beforehand, as long as that leaves one degree of freedom; where it does not,
+    /// parameters with priors count as the share `taken` of the residuals, and no more than one degree is left. `None` without any.
+    fn new(scatter: &Scatter, parameters: usize, taken: f64, chi2: f64, known_sd: bool) -> Option<Self> {
+        let n = scatter.n_obs as f64;
+        let free = (scatter.n_effective - parameters as f64).max((scatter.n_effective - taken).min(1.0));
+        if !(free > 0.0) {
+            return None;
+        }
+        let found = chi2 / n * scatter.n_effective / free;
+        let known = if known_sd { 1.0 } else { 0.0 };
+        Some(Freedom { factor: found.max(known) * n / scatter.n_effective, correlated: n / free })
+    }
+}
+
 /// Standard errors at `x`.
 ///
 /// - `held`: what is held and may be off, with its standard deviation: ln N, f, the wavelength scale.
@@ -125,40 +148,42 @@ pub(super) fn errors(
             }
         }
     }
-    let parameters = free.len() as f64;
-    let factor = match variance {
-        Variance::Stated => 1.0,
-        Variance::Found(Scatter { n_obs, n_effective }) => {
-            if !(n_effective > parameters) {
-                free.iter().for_each(|&i| knowledge[i] = Knowledge::NoDegreesOfFreedom);
-                1.0
-            } else {
-                let n = n_obs as f64;
-                // χ²/(n_eff − p) · n_eff/n is the variance of one residual, and n/n_eff residuals tell the same
-                let found = normal.chi2 / n * n_effective / (n_effective - parameters);
-                let known = if cost.measured.sd.is_some() { 1.0 } else { 0.0 };
-                found.max(known) * n / n_effective
-            }
-        }
-    };
-    let mut covariance = [[0.0; COUNT]; COUNT];
+    // A⁻¹; 0 for what is not free
+    let mut a_inverse = [[0.0; COUNT]; COUNT];
     for (row, &i) in free.iter().enumerate() {
         for (column, &j) in free.iter().enumerate() {
             let size = scale[row] * scale[column];
-            covariance[i][j] = if size > 0.0 { factor * inverse[row][column] / size } else { 0.0 };
+            a_inverse[i][j] = if size > 0.0 { inverse[row][column] / size } else { 0.0 };
+        }
+    }
+    let Freedom { factor, correlated } = match variance {
+        Variance::Stated => Freedom { factor: 1.0, correlated: 0.0 },
+        Variance::Found(scatter) => {
+            // tr(JᵀJ A⁻¹): a parameter that its prior decides takes nothing of the residuals
+            let taken = free.iter().map(|&i| 1.0 - (a_inverse[i][i] * prior_precision[i]).min(1.0)).sum();
+            Freedom::new(&scatter, free.len(), taken, normal.chi2, cost.measured.sd.is_some()).unwrap_or_else(|| {
+                free.iter().for_each(|&i| knowledge[i] = Knowledge::NoDegreesOfFreedom);
+                Freedom { factor: 1.0, correlated: 0.0 }
+            })
+        }
+    };
+    // x̂ − x = A⁻¹(Jᵀε + wP(μ − x)), A = JᵀJ + wP: the data's part has the variance found, the prior's own is P⁻¹ whatever it was
+    // weighed with, and A⁻¹(s²JᵀJ + w²P)A⁻¹ = s²A⁻¹ + A⁻¹(w − s²)wP A⁻¹
+    let mut covariance = a_inverse.map(|row| row.map(|a| factor * a));
+    for &k in &free {
+        let pulled = (cost.prior_weight - factor) * prior_precision[k];
+        for &i in &free {
+            for &j in &free {
+                covariance[i][j] += a_inverse[i][k] * pulled * a_inverse[k][j];
+            }
         }
     }
     let mut growth = [1.0; COUNT];
-    if let Variance::Found(Scatter { n_obs, n_effective }) = variance
-        && n_effective > parameters
-    {
+    if correlated > 0.0 {
         let scatter = cost.scatter(x)?;
-        // as above, what n_effective residuals tell less p
-        let correlated = n_obs as f64 / (n_effective - parameters);
         for &i in &free {
-            // the row of A⁻¹: 0 for what is not free
-            let row = covariance[i].map(|c| c / factor);
-            let more = correlated * form(&scatter, &row) - factor * form(&normal.matrix, &row);
+            let row = &a_inverse[i];
+            let more = correlated * form(&scatter, row) - factor * form(&normal.matrix, row);
             if more > 0.0 && covariance[i][i] > 0.0 {
                 growth[i] = (1.0 + more / covariance[i][i]).sqrt();
             }
@@ -184,7 +209,7 @@ pub(super) fn errors(
         }
         if prior_precision[i] > 0.0 {
             // the posterior's own variance, in units of the prior's
-            prior_share[i] = (covariance[i][i] * prior_precision[i] / factor).min(1.0);
+            prior_share[i] = (a_inverse[i][i] * prior_precision[i]).min(1.0);
         }
         let width = match treatments[i] {
             Treatment::Free { bounds, .. } => bounds.width(),

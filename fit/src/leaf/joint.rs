@@ -1,6 +1,7 @@
 //! Everything at once (Eq. 18), and the paper's two steps (§4.6), which are the same problem with the surface held.
 
 use std::boxed::Box;
+use std::vec;
 use std::vec::Vec;
 
 use leafbrdf_prospect::{Coupling, Parameter};
@@ -61,7 +62,10 @@ struct Surfaces {
     starts: Vec<[f64; PARAMETERS]>,
     parameters: [SurfaceTreatment<f64>; PARAMETERS],
     unseen: [bool; PARAMETERS],
+    /// Against the misfit of the surface alone, k_L free in every band.
     prior_weight: f64,
+    /// ν: as many independent residuals the measurement counts as where priors are weighed.
+    draws: f64,
     /// Standard errors of n and σ where they are means over bands.
     errors: [Option<f64>; PARAMETERS],
 }
@@ -104,7 +108,7 @@ fn surfaces(leaf: &Leaf<'_>, options: &LeafOptions, model: &LeafModel<'_, f64>) 
             }
         }
     }
-    Ok(Surfaces { starts, parameters, unseen, prior_weight: units * best.chi2 / draws, errors })
+    Ok(Surfaces { starts, parameters, unseen, prior_weight: units * best.chi2 / draws, draws, errors })
 }
 
 /// Means of n and σ over separately fitted bands, and their standard deviations.
@@ -155,7 +159,7 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
         diffuse: options.surface.diffuse,
         normalization: options.surface.normalization,
     };
-    let Surfaces { starts: surfaces, parameters, unseen, prior_weight, errors: of_means } =
+    let Surfaces { starts: surfaces, parameters, unseen, prior_weight, draws, errors: of_means } =
         surfaces(leaf, options, &surface)?;
     let mut treatments = treatments(options);
     for i in 0..PARAMETERS {
@@ -208,13 +212,25 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
     let problem = Part::new(leaf, options, &all)?;
     let model = problem.model(options, surface, scaled_index)?;
     let mut cost = Cost::new(model, problem.measured(), &ResidualModel::white(1.0), &treatments, prior_weight);
-    let mut whole = Found::default();
-    whole.add(cost.search(&best.x, options.tolerance, options.max_iterations), &cost);
+    let mut starts = vec![best.x];
     // the runner-up too: costs of some bands and of all are not to be compared
-    if let Some(second) = found.second.filter(|second| second.cost < 2.0 * best.cost) {
-        whole.add(cost.search(&second.x, options.tolerance, options.max_iterations), &cost);
+    starts.extend(found.second.filter(|second| second.cost < 2.0 * best.cost).map(|second| second.x));
+    let mut iterations = found.iterations;
+    let mut whole = from(&mut cost, &starts, options, &mut iterations);
+    let mut at = whole.best.ok_or(LeafError::Model)?;
+    if treatments.iter().any(|one| one.prior().is_some()) {
+        // a prior is weighed against what this model leaves over: more than the surface did with k_L free
+        for _ in 0..REWEIGHED {
+            let own = cost.normal(&at.x, false)?.chi2 / draws;
+            if (own - cost.prior_weight).abs() <= 1e-3 * own {
+                break;
+            }
+            cost.prior_weight = own;
+            let starts: Vec<_> = [Some(at), whole.second].into_iter().flatten().map(|at| at.x).collect();
+            whole = from(&mut cost, &starts, options, &mut iterations);
+            at = whole.best.ok_or(LeafError::Model)?;
+        }
     }
-    let at = whole.best.ok_or(LeafError::Model)?;
     let spectrum = errors::spectrum(&mut cost, &at.x)?;
     let errors = errors::errors(&mut cost, &at.x, &at.at_bound, &treatments, Variance::Found(spectrum.scatter), None)?;
     let k_lambert_se = errors::diffuse_errors(&mut cost, &at.x, &errors)?;
@@ -263,15 +279,28 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
         n_obs: spectrum.scatter.n_obs,
         n_effective: spectrum.scatter.n_effective,
         cost: at.cost,
-        prior_weight,
+        prior_weight: cost.prior_weight,
         condition: errors.condition,
         starts: found.starts(),
         agreeing: found.agreeing(),
-        iterations: found.iterations + whole.iterations,
+        iterations,
         termination: whole.best.map_or(Termination::MaxIterations, |best| best.termination),
         second: whole.second.map(|other| super::OtherLeaf { x: other.x, cost: other.cost }),
         recipe: None,
     })
+}
+
+/// The most times that priors are weighed anew; two or three are enough.
+const REWEIGHED: u32 = 6;
+
+/// One search from each start.
+fn from(cost: &mut Cost<'_>, starts: &[[f64; COUNT]], options: &LeafOptions, iterations: &mut u32) -> Found {
+    let mut found = Found::default();
+    for start in starts {
+        found.add(cost.search(start, options.tolerance, options.max_iterations), cost);
+    }
+    *iterations += found.iterations;
+    found
 }
 
 /// Some of the leaf's bands.
