@@ -5,6 +5,26 @@ use core::hint::black_box;
 use example::board;
 use example::text::{print, print_whole};
 
+/// A function that returns at once, and on a device by one instruction: compiled Rust would make itself a frame first, which would
+/// be taken for a part of what is around every call.
+macro_rules! empty {
+    ($name:ident($($argument:ty),* $(,)?)) => {
+        #[cfg(target_os = "none")]
+        #[unsafe(naked)]
+        extern "C" fn $name($(_: $argument),*) -> lb_status {
+            #[cfg(target_arch = "arm")]
+            core::arch::naked_asm!("bx lr");
+            #[cfg(target_arch = "riscv32")]
+            core::arch::naked_asm!("ret");
+        }
+        #[cfg(not(target_os = "none"))]
+        extern "C" fn $name($(_: $argument),*) -> lb_status {
+            0
+        }
+    };
+}
+pub(crate) use empty;
+
 /// Measures the entry point `real`, called by `call` with the number of the case; `empty` has the same signature and only returns.
 ///
 /// Both run through the same code, so that the difference is the entry point's own. `each`: cases are timed one by one, for a

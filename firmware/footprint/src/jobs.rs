@@ -11,7 +11,7 @@ use leafbrdf_c::{
     lb_prospect_slice, lb_status, lb_workspace,
 };
 
-use crate::cost::{line, measure};
+use crate::cost::{empty, line, measure};
 use crate::inputs::{Case, Random};
 
 /// Cases of the short calls, and how often each is called.
@@ -73,9 +73,7 @@ fn evaluations() {
     let at = |i: u32| black_box(&cases[i as usize % CASES]);
 
     type Brdf = for<'a> extern "C" fn(Option<&'a lb_leaf>, Option<&'a lb_cosines>, Out<'a, f32>) -> lb_status;
-    extern "C" fn no_brdf(_: Option<&lb_leaf>, _: Option<&lb_cosines>, _: Out<'_, f32>) -> lb_status {
-        0
-    }
+    empty!(no_brdf(Option<&lb_leaf>, Option<&lb_cosines>, Out<'_, f32>));
     measure("lb_brdf", lb_brdf as Brdf, no_brdf as Brdf, CALLS, false, |f, i| {
         let case = at(i);
         let mut out = MaybeUninit::zeroed();
@@ -83,9 +81,7 @@ fn evaluations() {
     });
 
     type Degrees = for<'a> extern "C" fn(Option<&'a lb_leaf>, f32, f32, f32, Out<'a, f32>) -> lb_status;
-    extern "C" fn no_degrees(_: Option<&lb_leaf>, _: f32, _: f32, _: f32, _: Out<'_, f32>) -> lb_status {
-        0
-    }
+    empty!(no_degrees(Option<&lb_leaf>, f32, f32, f32, Out<'_, f32>));
     measure("lb_brdf_from_degrees", lb_brdf_from_degrees as Degrees, no_degrees as Degrees, CALLS, false, |f, i| {
         let case = at(i);
         let [s, v, phi] = case.degrees;
@@ -95,9 +91,7 @@ fn evaluations() {
 
     type Gradient =
         for<'a> extern "C" fn(Option<&'a lb_leaf>, Option<&'a lb_cosines>, Out<'a, lb_gradient>) -> lb_status;
-    extern "C" fn no_gradient(_: Option<&lb_leaf>, _: Option<&lb_cosines>, _: Out<'_, lb_gradient>) -> lb_status {
-        0
-    }
+    empty!(no_gradient(Option<&lb_leaf>, Option<&lb_cosines>, Out<'_, lb_gradient>));
     measure("lb_brdf_gradient", lb_brdf_gradient as Gradient, no_gradient as Gradient, CALLS, false, |f, i| {
         let case = at(i);
         let mut out = MaybeUninit::zeroed();
@@ -111,9 +105,7 @@ fn evaluations() {
         unsafe { out.assume_init() }
     });
     type At = for<'a> extern "C" fn(Option<&'a lb_leaf>, Option<&'a lb_direction>, Out<'a, f32>) -> lb_status;
-    extern "C" fn no_at(_: Option<&lb_leaf>, _: Option<&lb_direction>, _: Out<'_, f32>) -> lb_status {
-        0
-    }
+    empty!(no_at(Option<&lb_leaf>, Option<&lb_direction>, Out<'_, f32>));
     measure("lb_brdf_at", lb_brdf_at as At, no_at as At, CALLS, false, |f, i| {
         let mut out = MaybeUninit::zeroed();
         black_box(f(Some(&at(i).leaf), Some(black_box(&directions[i as usize % CASES])), Some(&mut out)));
@@ -134,9 +126,7 @@ fn evaluations() {
 
 fn hemisphere() {
     type Dhrf = for<'a> extern "C" fn(Option<&'a lb_leaf>, f32, Out<'a, f32>) -> lb_status;
-    extern "C" fn no_dhrf(_: Option<&lb_leaf>, _: f32, _: Out<'_, f32>) -> lb_status {
-        0
-    }
+    empty!(no_dhrf(Option<&lb_leaf>, f32, Out<'_, f32>));
     // θ_s from 0° to 88° times σ from 0.01 to 1 in equal ratios
     const ANGLES: u32 = 12;
     const ROUGHNESSES: u32 = 12;
@@ -212,16 +202,9 @@ fn bands() {
         *mut lb_workspace,
         Out<'a, lb_band>,
     ) -> lb_status;
-    unsafe extern "C" fn no_fit(
-        _: Option<&lb_directions>,
-        _: *const f32,
-        _: *const f32,
-        _: Option<&lb_bounds>,
-        _: *mut lb_workspace,
-        _: Out<'_, lb_band>,
-    ) -> lb_status {
-        0
-    }
+    empty!(
+        no_fit(Option<&lb_directions>, *const f32, *const f32, Option<&lb_bounds>, *mut lb_workspace, Out<'_, lb_band>)
+    );
     let place = &raw mut workspace;
     let mut steps = 0;
     let mut sink = Sink::new();
@@ -276,15 +259,7 @@ fn interior() {
         *mut MaybeUninit<f32>,
         *mut MaybeUninit<f32>,
     ) -> lb_status;
-    unsafe extern "C" fn no_slice(
-        _: Option<&lb_interior>,
-        _: u32,
-        _: u32,
-        _: *mut MaybeUninit<f32>,
-        _: *mut MaybeUninit<f32>,
-    ) -> lb_status {
-        0
-    }
+    empty!(no_slice(Option<&lb_interior>, u32, u32, *mut MaybeUninit<f32>, *mut MaybeUninit<f32>));
     measure("lb_prospect_slice", lb_prospect_slice as Slice, no_slice as Slice, 1, false, |f, _| {
         // SAFETY: room for every band
         black_box(unsafe { f(Some(&leaf), 0, LB_SLICE_BANDS, r, t) });
@@ -308,17 +283,7 @@ fn interior() {
         f32,
         Out<'a, lb_cab>,
     ) -> lb_status;
-    unsafe extern "C" fn no_cab(
-        _: Option<&lb_leaf>,
-        _: *const f32,
-        _: *const f32,
-        _: u32,
-        _: Option<&lb_interior>,
-        _: f32,
-        _: Out<'_, lb_cab>,
-    ) -> lb_status {
-        0
-    }
+    empty!(no_cab(Option<&lb_leaf>, *const f32, *const f32, u32, Option<&lb_interior>, f32, Out<'_, lb_cab>));
     let mut found = MaybeUninit::<lb_cab>::zeroed();
     let place = &raw mut found;
     measure("lb_fit_cab", lb_fit_cab as Cab, no_cab as Cab, 1, false, |f, _| {
