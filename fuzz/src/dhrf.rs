@@ -15,8 +15,8 @@ pub fn dhrf(data: &[u8]) {
 
 fn both<T: Real>(input: &mut Input<'_>) {
     let theta_s = T::lit(input.within(0.0, 90.0));
-    let sigma = T::lit(input.within(1e-9, 1e3));
-    let n = T::lit(input.within(1.0, 1e4));
+    let sigma = T::lit(input.within(9.313_225_746_154_785e-10, 1024.0));
+    let n = T::lit(input.within(1.0, 16_384.0));
     let kappa = T::lit(input.within(0.0, 1e4));
     let Ok(illumination) = Illumination::new(Angle::from_degrees(theta_s)) else {
         assert!(theta_s.to_f64() >= 90.0 - 1e-5, "θ_s = {theta_s:?} is above the horizon");

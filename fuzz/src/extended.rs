@@ -17,7 +17,7 @@ pub fn extended(data: &[u8]) {
 fn both<T: Real>(input: &mut Input<'_>) {
     let angles = [input.around(0.0, 90.0), input.around(0.0, 90.0), input.around(-360.0, 360.0)];
     let angles = angles.map(|degrees| Angle::from_degrees(T::lit(degrees)));
-    let (n, sigma) = (T::lit(input.around(1.0, 1e4)), T::lit(input.around(1e-9, 1e3)));
+    let (n, sigma) = (T::lit(input.around(1.0, 16_384.0)), T::lit(input.around(9.313_225_746_154_785e-10, 1024.0)));
     let (a, b) = (T::lit(input.around(-1.0, 1.0)), T::lit(input.around(-1.0, 1.0)));
     let tilts = [input.around(-80.0, 80.0), input.around(-80.0, 80.0)];
     let kappa = T::lit(input.within(0.0, 1e4));

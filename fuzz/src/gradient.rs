@@ -20,8 +20,8 @@ fn geometry<T: Real>(input: &mut Input<'_>, highest_deg: f64) -> Option<Geometry
 /// On the whole domain: finite where the number type can hold it, and the value is that of the plain evaluation.
 fn finite<T: Real>(input: &mut Input<'_>) {
     let Some(geometry) = geometry::<T>(input, 90.0) else { return };
-    let n = T::lit(input.within(1.0, 1e4));
-    let sigma = T::lit(input.within(1e-9, 1e3));
+    let n = T::lit(input.within(1.0, 16_384.0));
+    let sigma = T::lit(input.within(9.313_225_746_154_785e-10, 1024.0));
     let k_lambert = T::lit(input.within(0.0, 1.0));
     let kappa = T::lit(input.within(0.0, 1e4));
 
@@ -38,7 +38,7 @@ fn finite<T: Real>(input: &mut Input<'_>) {
     }
 }
 
-/// Near σ = 10⁻⁹ and the horizon the true derivatives exceed the largest `f32`: infinite then, but never NaN.
+/// Near σ = 2⁻³⁰ and the horizon the true derivatives exceed the largest `f32`: infinite then, but never NaN.
 fn slopes<T: Real, I: Index<T>>(geometry: &Geometry<T>, surface: &Surface<T, I>) {
     let gradient = surface.brdf_with_gradient(geometry);
     assert!(gradient.value.to_f64() == surface.brdf(geometry).to_f64(), "the value is that of the plain evaluation");

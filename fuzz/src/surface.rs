@@ -94,14 +94,14 @@ fn same_bits<T: Real>(a: T, b: T) -> bool {
 
 fn real_index<T: Real>(input: &mut Input<'_>) {
     let case = Case::<T>::read(input);
-    let n = T::lit(input.around(1.0, 1e4));
-    let sigma = T::lit(input.around(1e-9, 1e3));
+    let n = T::lit(input.around(1.0, 16_384.0));
+    let sigma = T::lit(input.around(9.313_225_746_154_785e-10, 1024.0));
     let k_lambert = T::lit(input.around(0.0, 1.0));
 
     let dielectric = Dielectric::new(n);
-    agrees(&dielectric, domain(n, 1.0, 1e4), "n");
+    agrees(&dielectric, domain(n, 1.0, 16_384.0), "n");
     let surface = Surface::new(n, sigma);
-    agrees(&surface, all(&[domain(n, 1.0, 1e4), domain(sigma, 1e-9, 1e3)]), "n, sigma");
+    agrees(&surface, all(&[domain(n, 1.0, 16_384.0), domain(sigma, 9.313_225_746_154_785e-10, 1024.0)]), "n, sigma");
     if let (Ok(dielectric), Ok(geometry)) = (dielectric, case.geometry()) {
         fresnel_laws(dielectric, dielectric.polarized(geometry.cos_theta_a()), &geometry);
     }
@@ -119,15 +119,15 @@ fn real_index<T: Real>(input: &mut Input<'_>) {
 
 fn complex_index<T: Real>(input: &mut Input<'_>) {
     let case = Case::<T>::read(input);
-    let n = T::lit(input.around(1.0, 1e4));
+    let n = T::lit(input.around(1.0, 16_384.0));
     let kappa = T::lit(input.around(0.0, 1e4));
-    let sigma = T::lit(input.around(1e-9, 1e3));
+    let sigma = T::lit(input.around(9.313_225_746_154_785e-10, 1024.0));
 
     let absorbing = Absorbing::new(n, kappa);
-    let index_domain = all(&[domain(n, 1.0, 1e4), domain(kappa, 0.0, 1e4)]);
+    let index_domain = all(&[domain(n, 1.0, 16_384.0), domain(kappa, 0.0, 1e4)]);
     agrees(&absorbing, index_domain, "n, kappa");
     let surface = Surface::absorbing(n, kappa, sigma);
-    agrees(&surface, all(&[index_domain, domain(sigma, 1e-9, 1e3)]), "n, kappa, sigma");
+    agrees(&surface, all(&[index_domain, domain(sigma, 9.313_225_746_154_785e-10, 1024.0)]), "n, kappa, sigma");
     if let (Ok(absorbing), Ok(geometry)) = (absorbing, case.geometry()) {
         fresnel_laws(absorbing, absorbing.polarized(geometry.cos_theta_a()), &geometry);
     }

@@ -182,7 +182,7 @@ impl<T: Real> Illumination<T> {
     /// DHRF_spec under K = 4π, unitless, in [0, 1].
     ///
     /// - `index`: n, or n + iκ; checked by its constructor.
-    /// - `sigma`: roughness, unitless, in [10⁻⁹, 10³]; checked by [`Surface::new`](crate::Surface::new), not here.
+    /// - `sigma`: roughness, unitless, in [2⁻³⁰, 2¹⁰]; checked by [`Surface::new`](crate::Surface::new), not here.
     ///
     /// Accuracy and cost: see [`Grade`].
     #[inline]

@@ -20,7 +20,7 @@
 
 use crate::real::device::F32;
 use crate::real::fixed;
-use crate::{DirectionCosines, DirectionTerms, DomainError, Normalization, Real, Surface};
+use crate::{DirectionCosines, DirectionTerms, DomainError, Normalization, Real, Surface, domain};
 
 /// What the lobe needs of a pair of directions, all times 2^`UNIT`.
 #[derive(Clone, Copy)]
@@ -48,8 +48,8 @@ impl Refused {
     #[cold]
     fn cosine(self) -> DomainError {
         match self {
-            Refused::ThetaS => DomainError::new("theta_s", "1e-9 ≤ cos ≤ 1 and 0 ≤ sin ≤ 1"),
-            Refused::ThetaV => DomainError::new("theta_v", "1e-9 ≤ cos ≤ 1 and 0 ≤ sin ≤ 1"),
+            Refused::ThetaS => DomainError::new("theta_s", "2^-30 ≤ cos ≤ 1 and 0 ≤ sin ≤ 1"),
+            Refused::ThetaV => DomainError::new("theta_v", "2^-30 ≤ cos ≤ 1 and 0 ≤ sin ≤ 1"),
             Refused::PhiV => DomainError::new("cos_phi_v", "-1 ≤ cos phi_v ≤ 1"),
         }
     }
@@ -76,8 +76,8 @@ impl<T: Real> Pair<T, 0> {
     #[inline(always)]
     fn check(directions: &DirectionCosines<T>) -> Result<(), Refused> {
         let DirectionCosines { cos_theta_s, sin_theta_s, cos_theta_v, sin_theta_v, cos_phi_v } = *directions;
-        // 10⁻⁹ is 0.06 µrad above the horizon; from there on no product below leaves the range of f32
-        let inside = |cos: T, sin: T| cos.is_within(1e-9, 1.0) && sin.is_within(0.0, 1.0);
+        // 2⁻³⁰ is 1 nrad above the horizon; from there on no product below leaves the range of f32
+        let inside = |cos: T, sin: T| cos.is_within(domain::COS[0], domain::COS[1]) && sin.is_within(0.0, 1.0);
         if !inside(cos_theta_s, sin_theta_s) {
             return Err(Refused::ThetaS);
         }
@@ -200,7 +200,7 @@ impl<T: Real> Surface<T> {
     /// `f32`: within 1e-5 where tan²α/σ² < 14, 2.5e-5 where < 80 (θ to 79°, σ ≥ 0.05).
     ///
     /// # Errors
-    /// [`DomainError`] unless 10⁻⁹ ≤ cosθ ≤ 1, 0 ≤ sinθ ≤ 1 and |cosφ_v| ≤ 1. A sine and a cosine that do not belong
+    /// [`DomainError`] unless 2⁻³⁰ ≤ cosθ ≤ 1, 0 ≤ sinθ ≤ 1 and |cosφ_v| ≤ 1. A sine and a cosine that do not belong
     /// together give a meaningless number: [`Geometry::from_cosines`](crate::Geometry::from_cosines) tells.
     ///
     /// ```

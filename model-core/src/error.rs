@@ -10,7 +10,7 @@ use core::fmt;
 /// use leafbrdf_core::Surface;
 /// let error = Surface::new(1.4, -0.1).unwrap_err();
 /// assert_eq!(error.parameter, "sigma");
-/// assert_eq!(error.to_string(), "sigma is outside its domain: expected 1e-9 ≤ sigma ≤ 1e3");
+/// assert_eq!(error.to_string(), "sigma is outside its domain: expected 2^-30 ≤ sigma ≤ 2^10");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]

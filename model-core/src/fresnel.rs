@@ -10,12 +10,12 @@
 //!
 //! which equals Eq. 8 as printed; there g − c loses all its digits as n → 1.
 
-use crate::{DomainError, Real};
+use crate::{DomainError, Real, domain};
 
 mod absorbing;
 pub use absorbing::Absorbing;
 
-const N_DOMAIN: &str = "1 ≤ n ≤ 1e4";
+const N_DOMAIN: &str = "1 ≤ n ≤ 2^14";
 
 /// The surface's refractive index, relative to air: what the Fresnel factor needs to know of the material.
 pub trait Index<T: Real>: Copy {
@@ -70,10 +70,10 @@ impl<T: Real> Dielectric<T> {
     /// The index n, unitless.
     ///
     /// # Errors
-    /// [`DomainError`] unless 1 ≤ n ≤ 10⁴.
+    /// [`DomainError`] unless 1 ≤ n ≤ 2¹⁴.
     #[inline]
     pub fn new(n: T) -> Result<Self, DomainError> {
-        if !n.is_within(1.0, 1e4) {
+        if !n.is_within(domain::N[0], domain::N[1]) {
             return Err(DomainError::new("n", N_DOMAIN));
         }
         Ok(Dielectric { n })

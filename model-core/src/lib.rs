@@ -8,6 +8,8 @@ mod angle;
 mod dhrf;
 pub mod diffuse;
 mod direct;
+#[doc(hidden)]
+pub mod domain;
 mod error;
 pub mod facet;
 pub mod fresnel;

@@ -3,7 +3,7 @@
 use crate::facet::{Beckmann, Facets, beckmann, beckmann_log_slopes};
 use crate::fresnel::{Absorbing, Dielectric, Index};
 use crate::masking::{Masking, VCavity, v_cavity};
-use crate::{DhrfGradient, DomainError, Geometry, Grade, Hemispherical, Illumination, Real};
+use crate::{DhrfGradient, DomainError, Geometry, Grade, Hemispherical, Illumination, Real, domain};
 
 mod ggx;
 mod tilted;
@@ -150,7 +150,7 @@ impl<T: Real> Surface<T> {
     /// The paper's surface: real index n, roughness σ, Beckmann facets, V-cavity masking, K = 2π².
     ///
     /// # Errors
-    /// [`DomainError`] unless 1 ≤ n ≤ 10⁴ and 10⁻⁹ ≤ σ ≤ 10³ (outside, σ² leaves the range of `f32`).
+    /// [`DomainError`] unless 1 ≤ n ≤ 2¹⁴ and 2⁻³⁰ ≤ σ ≤ 2¹⁰ (outside, σ² leaves the range of `f32`).
     pub fn new(n: T, sigma: T) -> Result<Self, DomainError> {
         Surface::with_parts(Dielectric::new(n)?, sigma, Beckmann, VCavity)
     }
@@ -160,7 +160,7 @@ impl<T: Real> Surface<T, Absorbing<T>> {
     /// The same with a complex index n + iκ.
     ///
     /// # Errors
-    /// [`DomainError`] unless 1 ≤ n ≤ 10⁴, 0 ≤ κ ≤ 10⁴ and 10⁻⁹ ≤ σ ≤ 10³.
+    /// [`DomainError`] unless 1 ≤ n ≤ 2¹⁴, 0 ≤ κ ≤ 10⁴ and 2⁻³⁰ ≤ σ ≤ 2¹⁰.
     pub fn absorbing(n: T, kappa: T, sigma: T) -> Result<Self, DomainError> {
         Surface::with_parts(Absorbing::new(n, kappa)?, sigma, Beckmann, VCavity)
     }
@@ -170,10 +170,10 @@ impl<T: Real, I: Index<T>, D: Facets<T>, G: Masking<T>> Surface<T, I, D, G> {
     /// Any index, facet distribution and masking.
     ///
     /// # Errors
-    /// [`DomainError`] unless 10⁻⁹ ≤ σ ≤ 10³.
+    /// [`DomainError`] unless 2⁻³⁰ ≤ σ ≤ 2¹⁰.
     pub fn with_parts(index: I, sigma: T, facets: D, masking: G) -> Result<Self, DomainError> {
-        if !sigma.is_within(1e-9, 1e3) {
-            return Err(DomainError::new("sigma", "1e-9 ≤ sigma ≤ 1e3"));
+        if !sigma.is_within(domain::SIGMA[0], domain::SIGMA[1]) {
+            return Err(DomainError::new("sigma", "2^-30 ≤ sigma ≤ 2^10"));
         }
         Ok(Surface { index, sigma, normalization: Normalization::default(), facets, masking })
     }

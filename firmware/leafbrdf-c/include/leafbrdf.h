@@ -220,11 +220,11 @@ typedef struct lb_leaf {
    */
   float k_lambert;
   /**
-   * Refractive index of the surface, unitless, 1 to 10000.
+   * Refractive index of the surface, unitless, 1 to 16384.
    */
   float n;
   /**
-   * Roughness of the surface, unitless, 1e-9 to 1000: facets are spread as exp(-tan^2(alpha)/sigma^2).
+   * Roughness of the surface, unitless, 2^-30 to 1024: facets are spread as exp(-tan^2(alpha)/sigma^2).
    */
   float sigma;
   /**
@@ -407,12 +407,12 @@ typedef struct lb_gradient {
 #define LB_ERR_K_LAMBERT 6
 
 /**
- * n is outside 1 <= n <= 10000.
+ * n is outside 1 <= n <= 16384.
  */
 #define LB_ERR_N 7
 
 /**
- * sigma is outside 1e-9 <= sigma <= 1000.
+ * sigma is outside 2^-30 <= sigma <= 1024.
  */
 #define LB_ERR_SIGMA 8
 
@@ -592,7 +592,7 @@ uint32_t lb_version(void);
 /**
  * Fresnel factor of a facet (Eq. 8): the share of unpolarised light that it reflects, unitless, 0 to 1.
  *
- * - n: refractive index, 1 to 10000.
+ * - n: refractive index, 1 to 16384.
  * - cos_theta_a: cosine of the incidence angle on the facet, 0 to 1.
  *
  * Example: n = 1.5 at cos_theta_a = 1 gives 0.04.

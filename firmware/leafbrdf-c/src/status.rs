@@ -19,9 +19,9 @@ pub const LB_ERR_PHI_V: lb_status = 4;
 pub const LB_ERR_THETA_A: lb_status = 5;
 /// k_lambert is outside 0 <= k_lambert <= 1.
 pub const LB_ERR_K_LAMBERT: lb_status = 6;
-/// n is outside 1 <= n <= 10000.
+/// n is outside 1 <= n <= 16384.
 pub const LB_ERR_N: lb_status = 7;
-/// sigma is outside 1e-9 <= sigma <= 1000.
+/// sigma is outside 2^-30 <= sigma <= 1024.
 pub const LB_ERR_SIGMA: lb_status = 8;
 /// normalization is neither LB_BOUSQUET_2005 nor LB_COOK_TORRANCE.
 pub const LB_ERR_NORMALIZATION: lb_status = 9;
@@ -49,8 +49,8 @@ pub extern "C" fn lb_status_text(status: lb_status) -> *const c_char {
         LB_ERR_PHI_V => c"phi_v: expected -360 to 360 degrees, or a cosine from -1 to 1",
         LB_ERR_THETA_A => c"cos_theta_a: expected 0 to 1",
         LB_ERR_K_LAMBERT => c"k_lambert: expected 0 to 1",
-        LB_ERR_N => c"n: expected 1 to 10000",
-        LB_ERR_SIGMA => c"sigma: expected 1e-9 to 1000",
+        LB_ERR_N => c"n: expected 1 to 16384",
+        LB_ERR_SIGMA => c"sigma: expected 2^-30 to 1024",
         LB_ERR_NORMALIZATION => c"normalization: expected LB_BOUSQUET_2005 or LB_COOK_TORRANCE",
         LB_ERR_BOUNDS => c"bounds: expected lower < upper, inside the model's domain",
         LB_ERR_DATA => c"data: expected finite values and weights >= 0; give missing values weight 0",

@@ -24,9 +24,9 @@ pub const LB_COOK_TORRANCE: u32 = 1;
 pub struct lb_leaf {
     /// Lambert coefficient k_L, unitless, 0 to 1.
     pub k_lambert: f32,
-    /// Refractive index of the surface, unitless, 1 to 10000.
+    /// Refractive index of the surface, unitless, 1 to 16384.
     pub n: f32,
-    /// Roughness of the surface, unitless, 1e-9 to 1000: facets are spread as exp(-tan^2(alpha)/sigma^2).
+    /// Roughness of the surface, unitless, 2^-30 to 1024: facets are spread as exp(-tan^2(alpha)/sigma^2).
     pub sigma: f32,
     /// LB_BOUSQUET_2005 or LB_COOK_TORRANCE. An n fitted under one means nothing under the other.
     pub normalization: u32,
@@ -141,7 +141,7 @@ pub(crate) fn give<T>(out: &mut MaybeUninit<T>, result: Result<T, lb_status>) ->
 
 /// Fresnel factor of a facet (Eq. 8): the share of unpolarised light that it reflects, unitless, 0 to 1.
 ///
-/// - n: refractive index, 1 to 10000.
+/// - n: refractive index, 1 to 16384.
 /// - cos_theta_a: cosine of the incidence angle on the facet, 0 to 1.
 ///
 /// Example: n = 1.5 at cos_theta_a = 1 gives 0.04.

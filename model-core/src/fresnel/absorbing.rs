@@ -1,6 +1,6 @@
 //! F for a complex index n + iκ: the same form as for a real one, in complex arithmetic.
 
-use super::{Index, N_DOMAIN, Polarized};
+use super::{Dielectric, Index, Polarized};
 use crate::{DomainError, Real};
 
 /// A complex refractive index n + iκ, where absorption at the surface cannot be neglected (§4.1).
@@ -22,14 +22,11 @@ impl<T: Real> Absorbing<T> {
     /// The index n + iκ, unitless.
     ///
     /// # Errors
-    /// [`DomainError`] unless 1 ≤ n ≤ 10⁴ and 0 ≤ κ ≤ 10⁴.
+    /// [`DomainError`] unless 1 ≤ n ≤ 2¹⁴ and 0 ≤ κ ≤ 10⁴.
     #[inline]
     pub fn new(n: T, kappa: T) -> Result<Self, DomainError> {
-        let largest = T::lit(1e4);
-        if !(n >= T::ONE && n <= largest) {
-            return Err(DomainError::new("n", N_DOMAIN));
-        }
-        if !(kappa >= T::ZERO && kappa <= largest) {
+        Dielectric::new(n)?;
+        if !kappa.is_within(0.0, 1e4) {
             return Err(DomainError::new("kappa", "0 ≤ kappa ≤ 1e4"));
         }
         Ok(Absorbing { n, kappa })

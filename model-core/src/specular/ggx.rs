@@ -16,7 +16,7 @@ impl<T: Real> GgxSurface<T> {
     /// explicit [`with_normalization`](Surface::with_normalization) is honoured.
     ///
     /// # Errors
-    /// [`DomainError`] unless 1 ≤ n ≤ 10⁴ and 10⁻⁹ ≤ σ ≤ 10³.
+    /// [`DomainError`] unless 1 ≤ n ≤ 2¹⁴ and 2⁻³⁰ ≤ σ ≤ 2¹⁰.
     ///
     /// ```
     /// use leafbrdf_core::{Angle, Geometry, Surface};
