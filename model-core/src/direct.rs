@@ -7,32 +7,26 @@
 //! tan²α = h/S    c² = cos²θ_a = (S + h)/4    G/cos⁴α = 16 c² min(c², (cosθ_s + cosθ_v) min(cosθ_s, cosθ_v))/S²
 //! ```
 //!
-//! and with e = n² − 1, g = √(e + c²), a = g + c, the two amplitudes of F by one division (Cook and Torrance 1982; their g − c
-//! is e/a here, which keeps its digits as n → 1):
-//!
-//! ```text
-//!        e             c a − 1                        e            e a (c a − 1)
-//! r_s = ───    r_p = ───────────── r_s    that is    ───  and  ───────────────────
-//!        a²           c (g − c) + 1                   a²          a² (a + c e)
-//! ```
-//!
-//! Four divisions, two roots, one exponential. (h/(S σ²) by a reciprocal would round twice what the exponential enlarges 80 times.)
+//! and F from c² (`fresnel/squares.rs`). Four divisions, one root, one exponential. (h/(S σ²) by a
+//! reciprocal would round twice what the exponential enlarges 80 times.)
 
+use crate::fresnel::squares;
 use crate::real::device::F32;
 use crate::real::fixed;
-use crate::{DirectionCosines, DirectionTerms, DomainError, Normalization, Real, Surface, domain};
+use crate::{DirectionCosines, DirectionTerms, DomainError, Leaf, Normalization, Real, Surface, domain};
 
-/// What the lobe needs of a pair of directions, all times 2^`UNIT`.
-#[derive(Clone, Copy)]
-struct Pair<T, const UNIT: u32> {
+/// What the lobe needs of a pair of directions.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct Pair<T> {
     /// S
-    cos_sum2: T,
+    pub cos_sum2: T,
     /// h
-    h: T,
+    pub h: T,
     /// cosθ_s cosθ_v
-    cos_cos: T,
+    pub cos_cos: T,
     /// (cosθ_s + cosθ_v) min(cosθ_s, cosθ_v): where c² is larger, facets hide each other
-    edge: T,
+    pub edge: T,
 }
 
 /// The angle that was refused.
@@ -64,7 +58,7 @@ impl Refused {
     }
 }
 
-impl<T: Real> Pair<T, 0> {
+impl<T: Real> Pair<T> {
     #[inline(always)]
     fn from_cosines(directions: &DirectionCosines<T>) -> Result<Self, Refused> {
         Self::check(directions)?;
@@ -74,7 +68,8 @@ impl<T: Real> Pair<T, 0> {
     /// What a wrong table would most likely hold: a value outside its range. That a sine and a cosine belong together is not
     /// checked.
     #[inline(always)]
-    fn check(directions: &DirectionCosines<T>) -> Result<(), Refused> {
+    #[doc(hidden)]
+    pub fn check(directions: &DirectionCosines<T>) -> Result<(), Refused> {
         let DirectionCosines { cos_theta_s, sin_theta_s, cos_theta_v, sin_theta_v, cos_phi_v } = *directions;
         // 2⁻³⁰ is 1 nrad above the horizon; from there on no product below leaves the range of f32
         let inside = |cos: T, sin: T| cos.is_within(domain::COS[0], domain::COS[1]) && sin.is_within(0.0, 1.0);
@@ -91,40 +86,79 @@ impl<T: Real> Pair<T, 0> {
     }
 
     #[inline(always)]
-    fn unchecked(directions: &DirectionCosines<T>) -> Self {
-        let DirectionCosines { cos_theta_s, sin_theta_s, cos_theta_v, sin_theta_v, cos_phi_v } = *directions;
-        let product = sin_theta_s * sin_theta_v * (T::ONE + cos_phi_v);
-        let cos_sum = cos_theta_s + cos_theta_v;
+    #[doc(hidden)]
+    pub fn unchecked(directions: &DirectionCosines<T>) -> Self {
+        let d = directions;
+        let product = d.sin_theta_s * d.sin_theta_v * (T::one() + d.cos_phi_v);
+        let h = (d.sin_theta_s - d.sin_theta_v).squared() + (product + product);
+        let cos_sum = d.cos_theta_s + d.cos_theta_v;
         Pair {
             cos_sum2: cos_sum.squared(),
-            h: (sin_theta_s - sin_theta_v).squared() + (product + product),
-            cos_cos: cos_theta_s * cos_theta_v,
-            edge: cos_sum * cos_theta_s.min(cos_theta_v),
+            h,
+            cos_cos: d.cos_theta_s * d.cos_theta_v,
+            edge: cos_sum * d.cos_theta_s.min(d.cos_theta_v),
         }
     }
-}
 
-impl<T: Real, const UNIT: u32> Pair<T, UNIT> {
-    /// 1 in this unit.
-    const ONE: f64 = (1_u64 << UNIT) as f64;
-
-    /// A number in this unit as it is.
-    #[inline(always)]
-    fn unscaled(&self, x: T) -> T {
-        // a product by 1 is a call like any other
-        if UNIT == 0 { x } else { T::lit(1.0 / Self::ONE) * x }
-    }
-
-    /// c², in this unit.
+    /// c²
     #[inline(always)]
     fn cos2_theta_a(&self) -> T {
         T::lit(0.25) * (self.cos_sum2 + self.h)
     }
+
+    /// π BRDF_spec = lobe · F · [`lobe_factor`], for a checked σ that is asked for when it is needed:
+    ///
+    /// ```text
+    ///         4 c² min(c², edge) exp(−h/(S σ²))
+    /// lobe = ─────────────────────────────────── DECAY_GAIN
+    ///               S² σ² cosθ_s cosθ_v
+    /// ```
+    #[inline(always)]
+    fn lobe(&self, sigma: impl FnOnce() -> T) -> T {
+        let projected = self.cos2_theta_a().min(self.edge) / (self.cos_sum2 * self.cos_cos);
+        let four_c2 = self.cos_sum2 + self.h;
+        let sigma = sigma();
+        let s_sigma2 = self.cos_sum2 * sigma * sigma;
+        (self.h / (s_sigma2 * T::lit(T::DECAY_UNIT))).decay() * four_c2 / s_sigma2 * projected
+    }
+
+    /// F at a checked index.
+    #[inline(always)]
+    fn fresnel(&self, n: T) -> T {
+        squares::fresnel(squares::excess(n), self.cos2_theta_a())
+    }
+
+    /// BRDF in sr⁻¹ of a leaf of checked parameters, each asked for when it is needed.
+    #[doc(hidden)]
+    #[inline(always)]
+    pub fn leaf(
+        &self,
+        k_lambert: impl FnOnce() -> T,
+        n: impl FnOnce() -> T,
+        sigma: impl FnOnce() -> T,
+        normalization: impl FnOnce() -> Normalization,
+    ) -> T {
+        let lobe = self.lobe(sigma) * self.fresnel(n());
+        let lobe = lobe * lobe_factor(normalization());
+        (k_lambert() + lobe) * T::lit(core::f64::consts::FRAC_1_PI)
+    }
+}
+
+/// What [`Pair::lobe`] leaves to the constant K, 4π/K: 2/π or 1, over the gain of the exponential. The first needs no number that a
+/// diffuse term does not.
+#[inline(always)]
+fn lobe_factor<T: Real>(normalization: Normalization) -> T {
+    match normalization {
+        Normalization::Bousquet2005 => T::lit(2.0 / T::DECAY_GAIN * core::f64::consts::FRAC_1_PI),
+        Normalization::CookTorrance => T::lit(1.0 / T::DECAY_GAIN),
+    }
 }
 
 /// The half vector of directions in degrees, computed once for all that use it; `cos_sum2` below 0 where an angle was refused.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C)]
-struct HalfVector {
+pub struct HalfVector {
     cos_sum2: f32,
     h: f32,
     cos_cos: f32,
@@ -134,8 +168,9 @@ struct HalfVector {
 /// Everything in integers until the last step: 1e-9 absolute.
 ///
 /// By the calling convention of C, which returns four numbers in registers where there is a floating-point unit.
+#[doc(hidden)]
 #[inline(never)]
-extern "C" fn half_vector(theta_s: f32, theta_v: f32, phi_v: f32) -> HalfVector {
+pub extern "C" fn half_vector(theta_s: f32, theta_v: f32, phi_v: f32) -> HalfVector {
     let refused = |code: f32| HalfVector { cos_sum2: code, h: 0.0, cos_cos: 0.0, edge: 0.0 };
     // to the last number below 90
     let zenith = |theta: f32| F32(theta).is_within(0.0, 89.999_992);
@@ -149,18 +184,18 @@ extern "C" fn half_vector(theta_s: f32, theta_v: f32, phi_v: f32) -> HalfVector 
         return refused(-3.0);
     }
     let sines = fixed::direction_here(theta_s, theta_v, phi_v);
-    // the unit of a sine is 2⁻³⁰, that of a product 2⁻⁶⁰: nothing is scaled
+    // the unit of a sine is 2⁻³⁰
     let number = |q30: u32| F32(q30 as f32);
+    let product = |a: u32, b: u32| number(a) * F32(fixed::scaled(b, -60));
     // what the exponent takes is rounded after sum and difference, and after the square: near the mirror direction nothing is lost
     let cos_sum = sines.cos_theta_s + sines.cos_theta_v;
-    let difference = number(sines.sin_theta_s.abs_diff(sines.sin_theta_v));
-    let sin_sin = number(sines.sin_theta_s) * number(sines.sin_theta_v);
+    let difference = F32(fixed::scaled(sines.sin_theta_s.abs_diff(sines.sin_theta_v), -30));
     let four_cos2_half_phi = F32(fixed::square(sines.cos_half_phi, -29));
     HalfVector {
-        cos_sum2: fixed::square(cos_sum, 0),
-        h: (difference.squared() + sin_sin * four_cos2_half_phi).0,
-        cos_cos: (number(sines.cos_theta_s) * number(sines.cos_theta_v)).0,
-        edge: (number(cos_sum) * number(sines.cos_theta_s.min(sines.cos_theta_v))).0,
+        cos_sum2: fixed::square(cos_sum, -30),
+        h: (difference.squared() + product(sines.sin_theta_s, sines.sin_theta_v) * four_cos2_half_phi).0,
+        cos_cos: product(sines.cos_theta_s, sines.cos_theta_v).0,
+        edge: product(cos_sum, sines.cos_theta_s.min(sines.cos_theta_v)).0,
     }
 }
 
@@ -176,8 +211,9 @@ impl Degrees {
         Degrees(half_vector(theta_s.0, theta_v.0, phi_v.0))
     }
 
+    #[doc(hidden)]
     #[inline(always)]
-    fn pair(self) -> Result<Pair<F32, 60>, Refused> {
+    pub fn pair(self) -> Result<Pair<F32>, Refused> {
         let HalfVector { cos_sum2, h, cos_cos, edge } = self.0;
         let code = cos_sum2.to_bits();
         if code >> 31 == 1 {
@@ -216,43 +252,13 @@ impl<T: Real> Surface<T> {
     /// ```
     #[inline]
     pub fn brdf_at_cosines(&self, directions: &DirectionCosines<T>) -> Result<T, DomainError> {
-        self.try_brdf_at_cosines(directions).map_err(Refused::cosine)
-    }
-
-    /// The same with an error that costs nothing.
-    #[doc(hidden)]
-    #[inline(always)]
-    pub fn try_brdf_at_cosines(&self, directions: &DirectionCosines<T>) -> Result<T, Refused> {
-        Ok(self.lobe(&Pair::from_cosines(directions)?))
+        Ok(self.lobe(&Pair::from_cosines(directions).map_err(Refused::cosine)?))
     }
 
     #[inline(always)]
-    fn lobe<const UNIT: u32>(&self, pair: &Pair<T, UNIT>) -> T {
-        let one = Pair::<T, UNIT>::ONE;
-        // the lobe first: then less is left to be kept
-
-        //        F exp(−h/(S σ²)) 16 c² min(c², edge)         4π/K
-        // BRDF = ────────────────────────────────────── · ───────────────
-        //                     S² σ²                        4π cosθ_s cosθ_v
-        let scaled_c2 = pair.cos2_theta_a();
-        let k = |value: f64| T::lit(value * one / T::DECAY_GAIN);
-        let k = match self.normalization() {
-            Normalization::Bousquet2005 => k(4.0 / (core::f64::consts::PI * core::f64::consts::PI)),
-            Normalization::CookTorrance => k(2.0 / core::f64::consts::PI),
-        };
-        let projected = k * scaled_c2.min(pair.edge) / (pair.cos_sum2 * pair.cos_cos);
-        let s_sigma2 = pair.cos_sum2 * self.sigma().squared();
-        let lobe = (pair.h / s_sigma2).decay() * (scaled_c2 / s_sigma2) * projected;
-
-        let c2 = pair.unscaled(scaled_c2);
-        let n = self.index().n();
-        let e = (n - T::ONE) * (n + T::ONE);
-        let (g, c) = T::sqrt_of_both(e + c2, c2);
-        let a = g + c;
-        let rest = a + c * e;
-        let inverse = e / (a.squared() * rest);
-        let twice_f = (rest * inverse).squared() + (a * (a * c - T::ONE) * inverse).squared();
-        twice_f * lobe
+    fn lobe(&self, pair: &Pair<T>) -> T {
+        let lobe = pair.lobe(|| self.sigma()) * pair.fresnel(self.index().n());
+        T::lit(core::f64::consts::FRAC_1_PI) * (lobe * lobe_factor(self.normalization()))
     }
 }
 
@@ -275,28 +281,58 @@ impl Surface<F32> {
     /// ```
     #[inline]
     pub fn brdf_at_degrees(&self, theta_s: F32, theta_v: F32, phi_v: F32) -> Result<F32, DomainError> {
-        self.try_brdf_at_degrees(Degrees::new(theta_s, theta_v, phi_v)).map_err(Refused::angle)
+        Ok(self.lobe(&Degrees::new(theta_s, theta_v, phi_v).pair().map_err(Refused::angle)?))
+    }
+}
+
+impl<T: Real> Leaf<T> {
+    /// BRDF in sr⁻¹ (Eq. 3) straight from sines and cosines: k_L/π and [`Surface::brdf_at_cosines`], which says what it takes and how
+    /// exact it is.
+    ///
+    /// # Errors
+    /// As for [`Surface::brdf_at_cosines`].
+    #[inline]
+    pub fn brdf_at_cosines(&self, directions: &DirectionCosines<T>) -> Result<T, DomainError> {
+        Ok(self.at_pair(&Pair::from_cosines(directions).map_err(Refused::cosine)?))
     }
 
-    /// The same with an error that costs nothing.
-    #[doc(hidden)]
     #[inline(always)]
-    pub fn try_brdf_at_degrees(&self, directions: Degrees) -> Result<F32, Refused> {
-        Ok(self.lobe(&directions.pair()?))
+    fn at_pair(&self, pair: &Pair<T>) -> T {
+        let surface = self.surface();
+        pair.leaf(|| self.k_lambert(), || surface.index().n(), || surface.sigma(), || surface.normalization())
+    }
+}
+
+impl Leaf<F32> {
+    /// BRDF in sr⁻¹ (Eq. 3) straight from degrees: k_L/π and [`Surface::brdf_at_degrees`].
+    ///
+    /// ```
+    /// use leafbrdf_core::{Leaf, Surface, real::device::F32};
+    /// // laurel (Table 4) in the mirror direction at 60°, with 3 % of diffuse light
+    /// let laurel = Leaf::new(F32(0.03), Surface::new(F32(1.22), F32(0.078))?)?;
+    /// let peak = laurel.brdf_at_degrees(F32(60.0), F32(60.0), F32(180.0))?;
+    /// assert!((peak.0 - 1.26).abs() < 0.01);
+    /// # Ok::<(), leafbrdf_core::DomainError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As for [`Surface::brdf_at_degrees`].
+    #[inline]
+    pub fn brdf_at_degrees(&self, theta_s: F32, theta_v: F32, phi_v: F32) -> Result<F32, DomainError> {
+        Ok(self.at_pair(&Degrees::new(theta_s, theta_v, phi_v).pair().map_err(Refused::angle)?))
     }
 }
 
 impl<T: Real> DirectionTerms<T> {
     #[inline(always)]
-    fn of_pair<const UNIT: u32>(pair: &Pair<T, UNIT>, normalization: Normalization) -> Self {
-        let one = Pair::<T, UNIT>::ONE;
+    fn of_pair(pair: &Pair<T>, normalization: Normalization) -> Self {
         let c2 = pair.cos2_theta_a();
         DirectionTerms {
             // absorbs rounding near the retro-direction
-            cos_theta_a: pair.unscaled(c2).min(T::ONE).sqrt(),
+            cos_theta_a: c2.min(T::ONE).sqrt(),
             tan2_alpha: pair.h / pair.cos_sum2,
             // G = min(1, edge/c²)
-            weight: T::lit(0.25 * one) * normalization.factor::<T>() * c2.min(pair.edge) / (c2 * pair.cos_cos),
+            weight: T::lit(0.25) * normalization.factor::<T>() * c2.min(pair.edge) / (c2 * pair.cos_cos),
         }
     }
 

@@ -13,6 +13,8 @@
 use crate::{DomainError, Real, domain};
 
 mod absorbing;
+#[doc(hidden)]
+pub mod squares;
 pub use absorbing::Absorbing;
 
 const N_DOMAIN: &str = "1 ≤ n ≤ 2^14";

@@ -20,6 +20,7 @@ pub struct Geometry<T> {
 
 /// Sines and cosines of one pair of directions, for callers that keep them in a table (a fixed goniometer head).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct DirectionCosines<T> {
     /// cos θ_s, in (0, 1].
     pub cos_theta_s: T,

@@ -23,7 +23,7 @@ pub use angle::Angle;
 pub use dhrf::{DhrfGradient, Grade, Hemispherical, Illumination};
 pub use diffuse::{Diffuse, DiffuseSlopes, Lambert, P1, P2};
 #[doc(hidden)]
-pub use direct::{Degrees, Refused};
+pub use direct::{Degrees, Pair, Refused, half_vector};
 pub use error::DomainError;
 pub use facet::{Beckmann, FacetSlopes, Facets, Ggx};
 pub use fresnel::{Absorbing, Dielectric, Index, Polarized};

@@ -129,15 +129,25 @@ pub trait Real:
         (x.sqrt(), y.sqrt())
     }
 
+    /// 1, for where it is needed now and then: not kept from one use to the next where that costs stack.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn one() -> Self {
+        Self::ONE
+    }
+
     /// By how much [`decay`](Self::decay) is too large: for the caller to fold into a constant of its own.
     #[doc(hidden)]
     const DECAY_GAIN: f64 = 1.0;
+    /// What [`decay`](Self::decay) counts in; likewise. Negative, as its argument is.
+    #[doc(hidden)]
+    const DECAY_UNIT: f64 = -1.0;
 
-    /// `DECAY_GAIN` · e⁻ˣ for x ≥ 0.
+    /// `DECAY_GAIN` · exp(−x `DECAY_UNIT`), x ≤ 0.
     #[doc(hidden)]
     #[inline(always)]
     fn decay(self) -> Self {
-        (-self).exp()
+        self.exp()
     }
 
     /// `lower` ≤ x ≤ `upper` for two constants, neither negative; false for NaN.

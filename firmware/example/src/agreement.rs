@@ -155,14 +155,12 @@ fn points(random: &mut Random, block: u32, print: &mut Print<'_>) {
         let cos_theta_a = F32(random.below(1025, 1.0 / 1024.0));
 
         let leaf = draw.leaf();
-        brdf.value(leaf.and_then(|leaf| Ok(diffuse(&leaf) + leaf.surface().brdf_at_cosines(&at).map_err(status)?)));
+        brdf.value(leaf.and_then(|leaf| leaf.brdf_at_cosines(&at).map_err(status)));
         gradients.values(leaf.and_then(|leaf| {
             let gradient = leaf.brdf_with_gradient(&Geometry::from_cosines(at).map_err(status)?);
             Ok([gradient.value, gradient.d_k_lambert, gradient.d_n, gradient.d_sigma])
         }));
-        by_degrees.value(leaf.and_then(|leaf| {
-            Ok(diffuse(&leaf) + leaf.surface().brdf_at_degrees(theta_s, theta_v, phi_v).map_err(status)?)
-        }));
+        by_degrees.value(leaf.and_then(|leaf| leaf.brdf_at_degrees(theta_s, theta_v, phi_v).map_err(status)));
 
         let terms = DirectionTerms::at_degrees(theta_s, theta_v, phi_v, draw.normalization).map_err(status);
         directions.values(terms.map(|terms| [terms.cos_theta_a, terms.tan2_alpha, terms.weight]));

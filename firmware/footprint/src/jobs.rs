@@ -122,6 +122,95 @@ fn evaluations() {
         sink.float(value(lb_brdf_from_degrees(Some(&case.leaf), s, v, phi, Some(&mut out)), out));
     }
     sink.print("evaluations");
+    edges();
+}
+
+/// What is refused, and as what: both calls of the BRDF at the edges of every argument, and of every two of them, for the first in order
+/// counts. Where there is a floating-point unit these checks are not compiled but written (`leafbrdf-c/src/entry.rs`).
+fn edges() {
+    // bits on both sides of every bound, zeros, the ends of the range and what is no number
+    const EDGES: [u32; 26] = [
+        0,
+        1,
+        2,
+        0x8000_0000,
+        0x8000_0001,
+        0x307F_FFFF, // 2^-30
+        0x3080_0000,
+        0x3F7F_FFFF, // 1
+        0x3F80_0000,
+        0x3F80_0001,
+        0xBF80_0000,
+        0xBF80_0001,
+        0x42B3_FFFF, // 90
+        0x42B4_0000,
+        0x43B4_0000, // 360
+        0x43B4_0001,
+        0xC3B4_0001,
+        0x4480_0000, // 2^10
+        0x4480_0001,
+        0x4680_0000, // 2^14
+        0x4680_0001,
+        0x7F7F_FFFF,
+        0x7F80_0000,
+        0xFF80_0000,
+        0x7FC0_0000,
+        0xFFFF_FFFF,
+    ];
+    // k_lambert, n, sigma, normalization; the directions
+    const GOOD: [f32; 9] = [0.3, 1.5, 0.25, 0.0, 0.8, 0.6, 0.6, 0.8, -0.5];
+    const DEGREES: [f32; 3] = [40.0, 50.0, 170.0];
+    let mut sink = Sink::new();
+    let mut both = |arguments: &[u32; 9], degrees: &[u32; 3]| {
+        let [k_lambert, n, sigma, normalization, at @ ..] = *arguments;
+        let [k_lambert, n, sigma] = [k_lambert, n, sigma].map(f32::from_bits);
+        let [cos_theta_s, sin_theta_s, cos_theta_v, sin_theta_v, cos_phi_v] = at.map(f32::from_bits);
+        let leaf = black_box(lb_leaf { k_lambert, n, sigma, normalization });
+        let at = black_box(lb_cosines { cos_theta_s, sin_theta_s, cos_theta_v, sin_theta_v, cos_phi_v });
+        let [s, v, phi] = degrees.map(f32::from_bits);
+        let mut out = MaybeUninit::zeroed();
+        let status = lb_brdf(Some(&leaf), Some(&at), Some(&mut out));
+        sink.word(status as u32);
+        sink.float(value(status, out));
+        let mut out = MaybeUninit::zeroed();
+        let status = lb_brdf_from_degrees(Some(&leaf), s, v, phi, Some(&mut out));
+        sink.word(status as u32);
+        sink.float(value(status, out));
+    };
+    let (good, degrees) = (GOOD.map(f32::to_bits), DEGREES.map(f32::to_bits));
+    for first in 0..9 {
+        // the tenth is none
+        for second in first + 1..10 {
+            for a in EDGES {
+                for b in EDGES {
+                    let (mut arguments, mut degrees) = (good, degrees);
+                    // no index: an image must hold no panic
+                    for (place, edge) in [(first, a), (second, b)] {
+                        arguments.iter_mut().skip(place).take(1).for_each(|argument| *argument = edge);
+                        degrees.iter_mut().skip(place.saturating_sub(4)).take(1).for_each(|degree| {
+                            if place >= 4 {
+                                *degree = edge;
+                            }
+                        });
+                    }
+                    both(&arguments, &degrees);
+                    if second == 9 {
+                        break;
+                    }
+                }
+            }
+        }
+    }
+    let case = Case::draw(&mut Random(1));
+    for null in 0..3 {
+        let mut out = MaybeUninit::zeroed();
+        let leaf = Some(&case.leaf).filter(|_| null != 0);
+        let at = Some(&case.cosines).filter(|_| null != 1);
+        sink.word(lb_brdf(leaf, at, Some(&mut out).filter(|_| null != 2)) as u32);
+        let mut out = MaybeUninit::zeroed();
+        sink.word(lb_brdf_from_degrees(leaf, 1.0, 2.0, 3.0, Some(&mut out).filter(|_| null != 2)) as u32);
+    }
+    sink.print("edges");
 }
 
 fn hemisphere() {

@@ -1,10 +1,12 @@
 //! Where C's pointers become Rust's slices: all the unsafe code there is.
 
+use leafbrdf_core::DirectionCosines;
 use leafbrdf_fit::device::Workspace;
 
 use crate::band::lb_workspace;
 use crate::number::Number;
 use crate::status::{LB_ERR_NULL, lb_status};
+use crate::surface::lb_cosines;
 
 /// `count` values at `pointer`.
 ///
@@ -61,4 +63,36 @@ pub unsafe fn workspace<'a>(pointer: *mut lb_workspace) -> Result<&'a mut Worksp
     }
     // SAFETY: of one size and alignment, and both nothing but floats, for which every content is a value
     unsafe { pointer.cast::<Workspace<Number>>().as_mut() }.ok_or(LB_ERR_NULL)
+}
+
+/// The same place, by a way that the compiler cannot see through: what has been read and checked is then read once more where it is
+/// needed, instead of being kept on the stack meanwhile. For a Cortex-M0, where every operation is a call and there are few registers.
+#[inline(always)]
+pub fn afresh<T>(place: &T) -> &T {
+    #[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+    {
+        #![expect(clippy::pointers_in_nomem_asm_block, reason = "the compiler shall know that nothing is read")]
+        let mut pointer = core::ptr::from_ref(place);
+        // SAFETY: no instruction at all
+        unsafe {
+            core::arch::asm!("/* {0} */", inlateout(reg) pointer, options(pure, nomem, nostack, preserves_flags))
+        };
+        // SAFETY: the same pointer
+        unsafe { &*pointer }
+    }
+    #[cfg(not(all(target_arch = "arm", not(target_abi = "eabihf"))))]
+    {
+        place
+    }
+}
+
+/// C's sines and cosines as the model's.
+#[inline(always)]
+pub fn cosines(at: &lb_cosines) -> &DirectionCosines<Number> {
+    const {
+        assert!(size_of::<DirectionCosines<Number>>() == size_of::<lb_cosines>());
+        assert!(align_of::<DirectionCosines<Number>>() == align_of::<lb_cosines>());
+    }
+    // SAFETY: five numbers both, in the same order
+    unsafe { &*core::ptr::from_ref(at).cast::<DirectionCosines<Number>>() }
 }

@@ -3,15 +3,18 @@
 use core::mem::MaybeUninit;
 
 use leafbrdf_core::{
-    Beckmann, Degrees, Dielectric, DirectionCosines, DomainError, Geometry, Index, Leaf, Normalization, Real, Refused,
+    Beckmann, Dielectric, DirectionCosines, DomainError, Geometry, Index, Leaf, Normalization, Pair, Real, Refused,
     Surface, VCavity,
 };
 
+use crate::border::afresh;
 use crate::number::{Number, float, number};
 use crate::status::{
     LB_ERR_K_LAMBERT, LB_ERR_N, LB_ERR_NORMALIZATION, LB_ERR_NULL, LB_ERR_PHI_V, LB_ERR_SIGMA, LB_ERR_THETA_A,
     LB_ERR_THETA_S, LB_ERR_THETA_V, LB_OK, lb_status,
 };
+#[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
+use {crate::border::cosines, leafbrdf_core::Degrees};
 
 /// Constant of the specular term as printed in the paper's Eq. 10, 2 pi^2. Fitted values of the paper belong to it.
 pub const LB_BOUSQUET_2005: u32 = 0;
@@ -67,6 +70,12 @@ impl lb_leaf {
     #[inline(always)]
     pub(crate) fn check_k_lambert(&self) -> Result<(), lb_status> {
         if number(self.k_lambert).is_within(0.0, 1.0) { Ok(()) } else { Err(LB_ERR_K_LAMBERT) }
+    }
+
+    /// The convention for K of a leaf that has been checked.
+    #[inline(always)]
+    fn checked_normalization(&self) -> Normalization {
+        if self.normalization == LB_BOUSQUET_2005 { Normalization::Bousquet2005 } else { Normalization::CookTorrance }
     }
 
     /// k_L/pi, the diffuse part: computed last, so that nothing keeps it meanwhile.
@@ -159,6 +168,7 @@ pub extern "C" fn lb_fresnel(n: f32, cos_theta_a: f32, fresnel: Option<&mut Mayb
 ///
 /// Relative error below 1e-5 where tan^2(alpha)/sigma^2 < 14, 2.5e-5 below 80. That a sine and a cosine belong together
 /// is not checked here (lb_brdf_gradient does).
+#[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
 #[unsafe(no_mangle)]
 pub extern "C" fn lb_brdf(
     leaf: Option<&lb_leaf>,
@@ -166,12 +176,28 @@ pub extern "C" fn lb_brdf(
     brdf: Option<&mut MaybeUninit<f32>>,
 ) -> lb_status {
     let (Some(leaf), Some(at), Some(out)) = (leaf, at, brdf) else { return LB_ERR_NULL };
-    let value = || {
+    let checked = || {
         leaf.check_k_lambert()?;
-        let specular = leaf.surface()?.try_brdf_at_cosines(&at.numbers()).map_err(direction)?;
-        Ok(float(leaf.diffuse() + specular))
+        leaf.surface()?;
+        Pair::check(cosines(at)).map_err(direction)
     };
-    give(out, value())
+    match checked() {
+        Ok(()) => leaf_at(afresh(leaf), &Pair::unchecked(cosines(afresh(at))), out),
+        Err(status) => status,
+    }
+}
+
+/// The leaf's BRDF, everything checked.
+#[inline(always)]
+pub(crate) fn leaf_at(leaf: &lb_leaf, pair: &Pair<Number>, out: &mut MaybeUninit<f32>) -> lb_status {
+    let brdf = pair.leaf(
+        || number(afresh(leaf).k_lambert),
+        || number(afresh(leaf).n),
+        || number(afresh(leaf).sigma),
+        || afresh(leaf).checked_normalization(),
+    );
+    out.write(float(brdf));
+    LB_OK
 }
 
 /// BRDF and its exact derivatives with respect to k_L, n and sigma, sr^-1.
@@ -204,6 +230,7 @@ pub extern "C" fn lb_brdf_gradient(
 /// Where directions are fixed, a table of lb_direction and lb_brdf_at are several times faster.
 ///
 /// Example: laurel (k_lambert 0, n 1.22, sigma 0.078, LB_BOUSQUET_2005) at 60, 60, 180 degrees gives 1.25 sr^-1.
+#[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
 #[unsafe(no_mangle)]
 pub extern "C" fn lb_brdf_from_degrees(
     leaf: Option<&lb_leaf>,
@@ -214,10 +241,13 @@ pub extern "C" fn lb_brdf_from_degrees(
 ) -> lb_status {
     let (Some(leaf), Some(out)) = (leaf, brdf) else { return LB_ERR_NULL };
     let directions = Degrees::new(number(theta_s_deg), number(theta_v_deg), number(phi_v_deg));
-    let value = || {
+    let pair = || {
         leaf.check_k_lambert()?;
-        let specular = leaf.surface()?.try_brdf_at_degrees(directions).map_err(direction)?;
-        Ok(float(leaf.diffuse() + specular))
+        leaf.surface()?;
+        directions.pair().map_err(direction)
     };
-    give(out, value())
+    match pair() {
+        Ok(pair) => leaf_at(afresh(leaf), &pair, out),
+        Err(status) => status,
+    }
 }

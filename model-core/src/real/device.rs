@@ -96,7 +96,7 @@ impl Sub for F32 {
         }
         #[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
         {
-            F32(soft::add(self.0, -other.0))
+            F32(soft::sub(self.0, other.0))
         }
     }
 }
@@ -159,6 +159,11 @@ impl Real for F32 {
     const HALF: Self = F32(0.5);
     const ONE: Self = F32(1.0);
     const TWO: Self = F32(2.0);
+    #[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+    #[inline(always)]
+    fn one() -> Self {
+        F32(soft::one())
+    }
     const PI: Self = F32(core::f32::consts::PI);
     const EPSILON: Self = F32(f32::EPSILON);
     const MAX: Self = F32(f32::MAX);
@@ -192,6 +197,7 @@ impl Real for F32 {
         F32(fixed::exp(self.0))
     }
     const DECAY_GAIN: f64 = fixed::DECAY_GAIN;
+    const DECAY_UNIT: f64 = fixed::DECAY_UNIT;
     #[inline(always)]
     fn decay(self) -> Self {
         F32(fixed::decay(self.0))

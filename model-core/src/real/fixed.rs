@@ -149,18 +149,28 @@ pub(crate) fn exp(x: f32) -> f32 {
     f32::from_bits((((k + 126) as u32) << 23) + (power(f) >> 7))
 }
 
-/// What [`decay`] gives is larger by this: so that it never leaves the normal numbers.
-pub(crate) const DECAY_GAIN: f64 = 4.0;
+/// What [`decay`] gives is larger by this.
+pub(crate) const DECAY_GAIN: f64 = 2.0;
+/// What [`decay`] counts in: −2⁻²⁴ log_e 2. A power of two by the constant that a caller multiplies with anyway.
+pub(crate) const DECAY_UNIT: f64 = -core::f64::consts::LN_2 / 16_777_216.0;
 
-/// 4 e⁻ˣ for x ≥ 0, and 0 where e⁻ˣ is below 2⁻¹²⁸: within 1.5 units in the last place.
-#[inline(always)]
+/// 2 exp(−x `DECAY_UNIT`) = 2 · 2^(x/2²⁴) for x ≤ 0: 8e-7. From 2⁻¹²⁷ down it fades linearly, to 0 at 2⁻¹²⁸ and beyond.
+#[cfg_attr(all(target_arch = "arm", not(target_abi = "eabihf")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_abi = "eabihf"))), inline(always))]
 pub(crate) fn decay(x: f32) -> f32 {
-    // x log₂e, Q24, and its complement, which is in the middle of what was cut off: −x log₂e = k + f/2³², k + 256 in the upper bits
-    let complement = !mul_high(truncated(x, 25), LOG2_E);
-    // the bit before the point is 2²³: it makes the exponent one larger
-    let bits = (((complement << 1) >> 25) << 23).wrapping_add(power(complement << 8) >> 7);
-    // 128 and more
-    f32::from_bits(if (complement as i32) < 0 { bits } else { 0 })
+    // k + f, f in [0, 1), Q24
+    #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
+    let y = x as i32;
+    #[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
+    let y = truncated(f32::from_bits(x.to_bits() & 0x7FFF_FFFF), 0).min(1 << 31).wrapping_neg() as i32;
+    // 2ᶠ = 1 + f − f p(f), p in Q26; all but one of its constants fit into an instruction of a Cortex-M4
+    let f = (y as u32) << 8;
+    let p = 0x0009_5000 + mul_high(f, 0x0001_E800);
+    let p = 0x0039_0039 + mul_high(f, p);
+    let p = 0x00F6_00F6 + mul_high(f, p);
+    let p = 20_592_990 - mul_high(f, p);
+    // 1 + f is the mantissa already, and k the exponent, 0 where y saturates
+    f32::from_bits((0x4000_0000 + (y >> 1)) as u32 - (mul_high(f, p) >> 3))
 }
 
 /// sin(π r/2)/r by z = r², Q32 → Q31: 3e-9.
@@ -201,12 +211,23 @@ pub(crate) fn direction(theta_s: f32, theta_v: f32, phi_v: f32) -> Sines {
 pub(crate) fn direction_here(theta_s: f32, theta_v: f32, phi_v: f32) -> Sines {
     #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
     {
-        direction_by(sine_here, theta_s, theta_v, phi_v)
+        direction_by(|r| in_turn(sine_here(in_turn(r))), theta_s, theta_v, phi_v)
     }
     #[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
     {
         direction_by(sine, theta_s, theta_v, phi_v)
     }
+}
+
+/// The same number; nothing of what it leads to begins before what precedes it here has ended, so that fewer are kept.
+#[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
+#[allow(unsafe_code)]
+#[inline(always)]
+fn in_turn(x: u32) -> u32 {
+    let same: u32;
+    // SAFETY: no instruction at all
+    unsafe { core::arch::asm!("/* {0} */", inlateout(reg) x => same, options(nomem, nostack, preserves_flags)) };
+    same
 }
 
 #[inline(always)]
@@ -215,12 +236,13 @@ fn direction_by(sine: impl Fn(u32) -> u32, theta_s: f32, theta_v: f32, phi_v: f3
     let (s, v) = (truncated(theta_s, 25), truncated(theta_v, 25));
     // |φ|/2, Q24; cos is even about 180°, and what is left of 90° has all the digits near the mirror direction
     let half = truncated(f32::from_bits(phi_v.to_bits() & 0x7FFF_FFFF), 23);
+    // in this order: what a caller makes of two sines, or of two cosines, replaces them
     Sines {
-        sin_theta_s: sine(s),
-        cos_theta_s: sine(QUARTER - s),
-        sin_theta_v: sine(v),
-        cos_theta_v: sine(QUARTER - v),
         cos_half_phi: sine(half.abs_diff(QUARTER / 2) << 1),
+        sin_theta_s: sine(s),
+        sin_theta_v: sine(v),
+        cos_theta_s: sine(QUARTER - s),
+        cos_theta_v: sine(QUARTER - v),
     }
 }
 
@@ -310,18 +332,25 @@ mod tests {
     }
 
     #[test]
-    fn the_decay_is_within_one_and_a_half_units_in_the_last_place_and_ends_in_0() {
+    fn the_decay_is_within_8e_7_and_ends_in_0() {
         let mut worst = 0.0_f64;
         for i in 0..2_000_000_u32 {
-            let x = i as f32 * (88.7 / 2e6);
-            let exact = super::DECAY_GAIN * (-f64::from(x)).exp();
-            let unit = exact.log2().floor().exp2() * 2.0_f64.powi(-23);
-            worst = worst.max((f64::from(super::decay(x)) - exact).abs() / unit);
+            let x = i as f32 * (-127.0 * 16_777_216.0 / 2e6);
+            let exact = super::DECAY_GAIN * (-f64::from(x) * super::DECAY_UNIT).exp();
+            worst = worst.max((f64::from(super::decay(x)) / exact - 1.0).abs());
         }
-        std::println!("decay: {worst:.3} units");
-        assert!(worst <= 1.5, "{worst}");
-        for far in [88.73, 128.0, 1e6, f32::INFINITY] {
-            assert_eq!(super::decay(far), 0.0, "{far}");
+        std::println!("decay: {worst:.3e}");
+        assert!(worst <= 8e-7, "{worst:e}");
+        let mut last = f32::MIN_POSITIVE;
+        for i in 0..=1000 {
+            let fading = super::decay(-16_777_216.0 * (127.0 + 0.001 * i as f32));
+            assert!((0.0..=last).contains(&fading), "{i}: {fading:e}");
+            last = fading;
         }
+        for far in [128.0, 200.0, 1e6, f32::INFINITY] {
+            assert_eq!(super::decay(-16_777_216.0 * far).to_bits(), 0, "{far}");
+        }
+        assert_eq!(super::decay(0.0), 2.0);
+        assert_eq!(super::decay(-0.0), 2.0);
     }
 }

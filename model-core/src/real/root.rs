@@ -52,11 +52,11 @@ fn by_instruction(x: f32) -> f32 {
     // there.
     unsafe {
         core::arch::asm!(
-            "vmov s0, {x}",
-            "vsqrt.f32 s0, s0",
-            "vmov {x}, s0",
+            "vmov s15, {x}",
+            "vsqrt.f32 s15, s15",
+            "vmov {x}, s15",
             x = inlateout(reg) x.to_bits() => result,
-            out("s0") _,
+            out("s15") _,
             options(pure, nomem, nostack, preserves_flags),
         );
     }
@@ -72,14 +72,14 @@ fn both_by_instruction(x: f32, y: f32) -> (f32, f32) {
     // SAFETY: as above
     unsafe {
         core::arch::asm!(
-            "vmov s0, s1, {x}, {y}",
-            "vsqrt.f32 s0, s0",
-            "vsqrt.f32 s1, s1",
-            "vmov {x}, {y}, s0, s1",
+            "vmov s14, s15, {x}, {y}",
+            "vsqrt.f32 s14, s14",
+            "vsqrt.f32 s15, s15",
+            "vmov {x}, {y}, s14, s15",
             x = inlateout(reg) x.to_bits() => root_x,
             y = inlateout(reg) y.to_bits() => root_y,
-            out("s0") _,
-            out("s1") _,
+            out("s14") _,
+            out("s15") _,
             options(pure, nomem, nostack, preserves_flags),
         );
     }

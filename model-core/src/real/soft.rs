@@ -38,10 +38,22 @@ fn product(a: u32, b: u32, exponent: &mut u32) -> u32 {
     (high >> 1) | (high & 1)
 }
 
-/// The product where an operand or the result is not a normal number.
+/// The product where an operand or the result is not a normal number. 0 times what is finite, no rarity in the tail of a lobe,
+/// comes before what takes more stack.
 #[cold]
 #[inline(never)]
 fn rare_product(ua: u32, ub: u32) -> f32 {
+    const INFINITE: u32 = INFINITY << 1;
+    if (ua << 1 == 0 && ub << 1 < INFINITE) || (ub << 1 == 0 && ua << 1 < INFINITE) {
+        return f32::from_bits((ua ^ ub) & SIGN);
+    }
+    rarer_product(ua, ub)
+}
+
+/// The same but for the zeros.
+#[cold]
+#[inline(never)]
+fn rarer_product(ua: u32, ub: u32) -> f32 {
     let sign = (ua ^ ub) & SIGN;
     let (a, b) = (ua & !SIGN, ub & !SIGN);
     if a > INFINITY || b > INFINITY {
@@ -49,9 +61,6 @@ fn rare_product(ua: u32, ub: u32) -> f32 {
     }
     if a == INFINITY || b == INFINITY {
         return if a == 0 || b == 0 { f32::NAN } else { f32::from_bits(sign | INFINITY) };
-    }
-    if a == 0 || b == 0 {
-        return f32::from_bits(sign);
     }
     let ((ma, ea), (mb, eb)) = (normal(a), normal(b));
     let mut carry = 0;
@@ -78,6 +87,9 @@ pub(crate) fn div(a: f32, b: f32) -> f32 {
         rest <<= 1;
         exponent -= 1;
     }
+    // one word from here on
+    let exponent = at_once(exponent as u32) as i32;
+    let rest = at_once(rest);
     // 1/divisor by Newton's method, y ← y (2 − divisor y): 6e-2, 3e-3 and 6e-5 in 16 bits (Q15), 4e-9 in 32 (Q30)
     let short = divisor >> 8;
     let mut y = 92_521 - ((short * 61_681) >> 16);
@@ -85,7 +97,7 @@ pub(crate) fn div(a: f32, b: f32) -> f32 {
         y = (y * (0x1_0000 - ((short * y) >> 16))) >> 15;
     }
     let y = y << 15;
-    let y = mul_high(y, SIGN - mul_high(divisor << 8, y)) << 2;
+    let y = mul_high(y, at_once(1 << 31) - mul_high(divisor << 8, y)) << 2;
     // 26 digits of the quotient, a few units off in the 30th; what is left is exact modulo 2³²
     let mut digits = mul_high(rest << 7, y) >> 4;
     let mut left = (rest << 25).wrapping_sub(digits.wrapping_mul(divisor)) as i32;
@@ -102,6 +114,19 @@ pub(crate) fn div(a: f32, b: f32) -> f32 {
     }
     let rounded = (digits + 0x3F + ((digits >> 7) & 1)) >> 7;
     f32::from_bits(sign | ((((exponent - 1) as u32) << 23) + rounded))
+}
+
+/// The same number, computed here and not later: between two others, so that only one is kept.
+#[inline(always)]
+fn at_once(x: u32) -> u32 {
+    #[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+    {
+        super::root::unseen(x)
+    }
+    #[cfg(not(all(target_arch = "arm", not(target_abi = "eabihf"))))]
+    {
+        x
+    }
 }
 
 /// The mantissa of 24 bits and the biased exponent of a magnitude that is neither 0 nor infinite.
@@ -186,6 +211,24 @@ pub(crate) fn add(a: f32, b: f32) -> f32 {
     let rounded = (sum + 3 + ((sum >> 3) & 1)) >> 3;
     let bits = ((exponent - 1) << 23) + rounded;
     f32::from_bits((ua & SIGN) | if bits < INFINITY { bits } else { INFINITY })
+}
+
+/// 1, made where it stands: kept for the next use it would cost a word of the stack.
+#[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+#[allow(unsafe_code)] // here and next
+#[inline(always)]
+pub(crate) fn one() -> f32 {
+    let one: u32;
+    // SAFETY: two instructions on a register
+    unsafe { core::arch::asm!("movs {0}, #127", "lsls {0}, {0}, #23", out(reg) one, options(nomem, nostack)) };
+    f32::from_bits(one)
+}
+
+/// a − b. A call of its own: two subtractions that change a sign in place would keep the bit for it between them.
+#[cfg(all(target_arch = "arm", not(target_abi = "eabihf")))]
+#[inline(never)]
+pub(crate) fn sub(a: f32, b: f32) -> f32 {
+    add(a, -b)
 }
 
 /// −1, 0 or 1 as a is below, equal to or above b; 2 where one of them is NaN.

@@ -1,0 +1,113 @@
+//! F at a real index by e = n² − 1 and the cosine of incidence, in the fewest operations: for devices.
+//!
+//! With q = c √(e + c²) and m = 1 − c² = sin²θ_a the two amplitudes of `fresnel.rs` are
+//!
+//! ```text
+//!             e                 q − m                         q² + m²    ⎛           e            ⎞²
+//! r_s = ─────────────    r_p = ─────── r_s    so that    F = ───────── · ⎜ ────────────────────── ⎟
+//!       e + 2 (q + c²)          q + m                                    ⎝ (e + 2 (q + c²))(q + m) ⎠
+//! ```
+//!
+//! which nothing cancels in, and c itself does not stand in.
+
+use crate::Real;
+
+/// e = n² − 1 of a checked index, with the digits that it has near n = 1.
+#[inline(always)]
+pub fn excess<T: Real>(n: T) -> T {
+    (n - T::one()) * (n + T::one())
+}
+
+/// F, unitless, in [0, 1].
+///
+/// - `e`: n² − 1 ≥ 0.
+/// - `c2`: cos²θ_a, above 0; a rounding above 1 does no harm.
+#[inline(always)]
+pub fn fresnel<T: Real>(e: T, c2: T) -> T {
+    let q2 = c2 * (e + c2);
+    let m = T::one() - c2;
+    let q = q2.sqrt();
+    let t = q + c2;
+    let r = e / ((e + t + t) * (q + m));
+    (q2 + m.squared()) * r.squared()
+}
+
+/// F and ∂F/∂ln e, for a fit that moves in ln e: by the amplitudes, for which one division serves both.
+///
+/// With g = √(e + c²): r_s = e/(g + c)² and e ∂r_s/∂e = r_s c/g; r_p likewise.
+///
+/// - `e`: n² − 1 > 0.
+/// - `c`: cos θ_a in (0, 1].
+#[inline(never)]
+pub fn fresnel_with_log_slope<T: Real>(e: T, c: T) -> (T, T) {
+    let c2 = c.squared();
+    let g = (e + c2).sqrt();
+    let u = g + c;
+    let v = (e * c + c) + g;
+    let (u2, v2) = (u.squared(), v.squared());
+    let u2_v2 = u2 * v2;
+    let inverse = T::ONE / (u2_v2 * g);
+    let e_g_inverse = e * g * inverse;
+    let r_s = e_g_inverse * v2;
+    let q = e_g_inverse * u2;
+    let c_g = c * inverse * u2_v2;
+    let r_p = q * (e * c2 + (T::TWO * c2 - T::ONE));
+    let r_s2 = r_s.squared();
+    let f = T::HALF * (r_s2 + r_p.squared());
+    // e + 2c² − 1
+    let slope = c_g * (r_s2 + r_p * q * (e + (T::TWO * c2 - T::ONE)));
+    (f, slope)
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use crate::real::device::F32;
+    use crate::{Dielectric, Index};
+
+    const INDICES: [f64; 7] = [1.0001, 1.1, 1.5, 2.2, 5.0, 100.0, 16384.0];
+    const COSINES: [f64; 6] = [1e-3, 0.1, 0.42, 0.7, 0.999, 1.0];
+
+    #[test]
+    fn f_and_its_slope_are_those_of_the_model() {
+        for n in INDICES {
+            for c in COSINES {
+                let e = super::excess(n);
+                let (expected, d_n) = Dielectric::new(n).unwrap().fresnel_with_slope(c);
+                // dn/d ln e = e/(2n)
+                let expected_slope = 0.5 * (n * n - 1.0) / n * d_n;
+                let f = super::fresnel(e, c * c);
+                assert!((f / expected - 1.0).abs() < 2e-14, "{n} {c}: {f} {expected}");
+                let (f, slope) = super::fresnel_with_log_slope(e, c);
+                assert!((f / expected - 1.0).abs() < 1e-10, "{n} {c}: {f} {expected}");
+                assert!((slope - expected_slope).abs() < 1e-9 * f, "{n} {c}: {slope} {expected_slope}");
+            }
+        }
+    }
+
+    #[test]
+    fn in_single_precision_f_has_no_cancellation_either() {
+        let mut worst = 0.0_f64;
+        for i in 0..4000 {
+            let n = F32(1.0 + 1e-4 * 1.002_f32.powi(i % 2000));
+            let c2 = F32(1.0 / (1.0 + 0.01 * (i / 7) as f32));
+            let exact = Dielectric::new(f64::from(n.0)).unwrap().fresnel(f64::from(c2.0).sqrt());
+            let f = super::fresnel(super::excess(n), c2);
+            worst = worst.max((f64::from(f.0) / exact - 1.0).abs());
+        }
+        std::println!("F in single precision: {worst:.2e}");
+        assert!(worst < 1.2e-6, "{worst:e}");
+    }
+
+    #[test]
+    fn there_is_no_surface_at_n_1_and_every_square_of_a_cosine_gives_a_share() {
+        for c2 in [1e-18_f32, 1e-9, 0.25, 1.0, 1.0 + 2.0 * f32::EPSILON] {
+            assert_eq!(super::fresnel(F32(0.0), F32(c2)).0, 0.0, "{c2:e}");
+            for n in INDICES {
+                let f = super::fresnel(super::excess(F32(n as f32)), F32(c2)).0;
+                assert!((0.0..=1.000_001).contains(&f), "{n} {c2:e}: {f}");
+            }
+        }
+    }
+}
