@@ -76,6 +76,32 @@ pub fn beckmann_log_slopes<T: Real>(tan2_alpha: T, sigma: T) -> (T, T) {
     (T::TWO * (x - T::ONE) * inv_sigma, (T::TWO - T::lit(6.0) * x) * inv_sigma.squared())
 }
 
+/// σ, prepared for the exponential of [`beckmann`] at many facets, with its slope: for a device's fit, which moves in ln σ.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct Falloff<T> {
+    /// what turns tan²α into the unit of `Real::decay`
+    per_tan2_alpha: T,
+}
+
+impl<T: Real> Falloff<T> {
+    /// D = GAIN⁻¹ κ · (1 + tan²α)² · [`at`](Self::at), κ = 1/(πσ²).
+    pub const GAIN: f64 = T::DECAY_GAIN;
+
+    /// From 1/σ².
+    #[inline(always)]
+    pub fn new(inv_sigma2: T) -> Self {
+        Falloff { per_tan2_alpha: inv_sigma2 * T::lit(1.0 / T::DECAY_UNIT) }
+    }
+
+    /// `GAIN` · exp(−tan²α/σ²), and ∂ ln D/∂ ln σ = 2 tan²α/σ² − 2.
+    #[inline(always)]
+    pub fn at(self, tan2_alpha: T) -> (T, T) {
+        let x = tan2_alpha * self.per_tan2_alpha;
+        (x.decay(), x * T::lit(2.0 * T::DECAY_UNIT) - T::TWO)
+    }
+}
+
 impl<T: Real> Facets<T> for Beckmann {
     #[inline(always)]
     fn density(self, tan2_alpha: T, sigma: T) -> T {
@@ -95,6 +121,31 @@ impl<T: Real> Facets<T> for Beckmann {
             d_sigma: value * log_slope,
             // ∂ ln D/∂tan²α
             d_tan2_alpha: value * (T::TWO / (T::ONE + tan2_alpha) - T::ONE / sigma.squared()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Falloff, beckmann, beckmann_log_slopes};
+    use crate::real::device::F32;
+
+    #[test]
+    fn the_falloff_is_that_of_the_density() {
+        for (tan2_alpha, sigma) in [(0.0, 0.3), (0.02, 0.1), (0.4, 0.29), (3.0, 1.0), (8.0, 0.5_f64)] {
+            let inv_sigma2 = 1.0 / (sigma * sigma);
+            let kappa = inv_sigma2 * core::f64::consts::FRAC_1_PI * (1.0 + tan2_alpha) * (1.0 + tan2_alpha);
+            let (expected, log_slope) = (beckmann(tan2_alpha, sigma), beckmann_log_slopes(tan2_alpha, sigma).0 * sigma);
+            let close = |(value, slope): (f64, f64), gain: f64, tolerance: f64| {
+                assert!((kappa * value / gain / expected - 1.0).abs() < tolerance, "{tan2_alpha} {sigma}: {value:e}");
+                assert!(
+                    (slope - log_slope).abs() < tolerance * (2.0 + log_slope.abs()),
+                    "{tan2_alpha} {sigma}: {slope}"
+                );
+            };
+            close(Falloff::new(inv_sigma2).at(tan2_alpha), Falloff::<f64>::GAIN, 1e-14);
+            let (value, slope) = Falloff::new(F32(inv_sigma2 as f32)).at(F32(tan2_alpha as f32));
+            close((f64::from(value.0), f64::from(slope.0)), Falloff::<F32>::GAIN, 1e-5);
         }
     }
 }

@@ -5,9 +5,11 @@
 //! normal and at 65° incidence, so that seven sums a rung serve every n.
 
 use leafbrdf_core::Real;
+use leafbrdf_core::facet::Falloff;
+use leafbrdf_core::fresnel::squares::fresnel_with_log_slope as fresnel;
 
 use super::Workspace;
-use super::lobe::{fresnel, look};
+use super::lobe::look;
 use super::search::Problem;
 use crate::bounds::Interval;
 
@@ -63,7 +65,8 @@ impl<T: Real> Workspace<T> {
         let inv_sigma2 = T::ONE / ladder.sigma2;
         let rungs = self.sums.get_mut(..ladder.rungs).unwrap_or(&mut []);
         let mut least = T::MAX;
-        let y_y = look(data, rungs, ladder.squarings, T::lit(E_0), inv_sigma2, T::ZERO, mean).d_d;
+        let kappa = T::lit(1.0 / Falloff::<T>::GAIN);
+        let y_y = look(data, rungs, ladder.squarings, T::lit(E_0), inv_sigma2, kappa, mean).d_d;
         for cost in &mut self.cost {
             *cost = (T::MAX, T::ONE);
         }

@@ -4,6 +4,7 @@
 //! and a parameter at a bound is nothing special. Coordinates are local, x(1 + z/2)/(1 − z/2): dz = d ln x, and no logarithm.
 
 use leafbrdf_core::Real;
+use leafbrdf_core::facet::Falloff;
 
 use super::lobe::{Data, Sums, look};
 use crate::bounds::Interval;
@@ -62,7 +63,7 @@ impl<T: Real> Problem<'_, T> {
     #[inline(always)]
     fn look(&self, e: T, sigma: T, near: T, sums: &mut Sums<T>, point: &mut Point<T>) {
         let inv_sigma2 = T::ONE / sigma.squared();
-        let kappa = inv_sigma2 * T::lit(core::f64::consts::FRAC_1_PI);
+        let kappa = inv_sigma2 * T::lit(core::f64::consts::FRAC_1_PI / Falloff::<T>::GAIN);
         let rest = look(self.data, core::slice::from_mut(sums), 0, e, inv_sigma2, kappa, near);
         let inv_total = T::ONE / self.total;
         let best = near + rest.d * inv_total;
