@@ -84,7 +84,7 @@ pub(super) fn look<T: Real>(
     let Data { directions, band } = data;
     let terms = directions.cos_theta_a.iter().zip(directions.tan2_alpha).zip(directions.weight);
     for ((((cos_theta_a, tan2_alpha), weight), y), w) in terms.zip(band.brdf).zip(band.weight) {
-        let (f, slope) = fresnel_with_log_slope(e, *cos_theta_a);
+        let (f, slope) = fresnel_with_log_slope(e, cos_theta_a.squared());
         let base = *weight * (T::ONE + *tan2_alpha).squared();
         let (decay, log_slope) = falloff.at(*tan2_alpha);
         let mut lobe = decay * kappa;

@@ -79,7 +79,7 @@ impl<T: Real> Workspace<T> {
         let grow = T::ONE / ladder.shrink;
         let mut at_e = e.lower;
         for _ in 0..(1 << ROOTS) + 1 {
-            let (f_0, f_1) = (fresnel(at_e, T::ONE).0, fresnel(at_e, T::lit(MATCHED_COSINE)).0);
+            let (f_0, f_1) = (fresnel(at_e, T::ONE).0, fresnel(at_e, T::lit(MATCHED_COSINE * MATCHED_COSINE)).0);
             let inv_pi_sigma2 = inv_sigma2 * T::lit(core::f64::consts::FRAC_1_PI);
             let mut alpha = (T::lit(ALPHA[0]) * f_0 + T::lit(ALPHA[1]) * f_1) * inv_pi_sigma2;
             let mut beta = (T::lit(BETA[0]) * f_0 + T::lit(BETA[1]) * f_1) * inv_pi_sigma2;
@@ -115,9 +115,9 @@ mod tests {
     fn f_is_developed_exactly_where_it_is_matched() {
         for n in [1.1, 1.2, 1.5, 1.8, 2.2, 3.0, 5.0_f64] {
             let e = n * n - 1.0;
-            let (f_0, f_1) = (fresnel(e, 1.0).0, fresnel(e, MATCHED_COSINE).0);
+            let (f_0, f_1) = (fresnel(e, 1.0).0, fresnel(e, MATCHED_COSINE * MATCHED_COSINE).0);
             let developed = |c| {
-                let (f, slope) = fresnel(E_0, c);
+                let (f, slope) = fresnel(E_0, c * c);
                 (ALPHA[0] * f_0 + ALPHA[1] * f_1) * f + (BETA[0] * f_0 + BETA[1] * f_1) * slope
             };
             assert!((developed(1.0) / f_0 - 1.0).abs() < 1e-11, "{n}");
@@ -125,7 +125,7 @@ mod tests {
             if (1.2..=2.2).contains(&n) {
                 for i in 0..=58 {
                     let c = 0.42 + 0.01 * f64::from(i);
-                    assert!((developed(c) / fresnel(e, c).0 - 1.0).abs() < 0.07, "{n} {c}");
+                    assert!((developed(c) / fresnel(e, c * c).0 - 1.0).abs() < 0.07, "{n} {c}");
                 }
             }
         }

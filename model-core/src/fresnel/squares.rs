@@ -18,45 +18,72 @@ pub fn excess<T: Real>(n: T) -> T {
     (n - T::one()) * (n + T::one())
 }
 
+/// What F is made of.
+struct Parts<T> {
+    /// q²
+    q2: T,
+    q: T,
+    m: T,
+    /// q + c²
+    t: T,
+    /// e + 2 (q + c²)
+    a: T,
+    /// q + m
+    d: T,
+}
+
+impl<T: Real> Parts<T> {
+    #[inline(always)]
+    fn new(e: T, c2: T) -> Self {
+        let q2 = c2 * (e + c2);
+        let m = T::one() - c2;
+        let q = q2.sqrt();
+        let t = q + c2;
+        Parts { q2, q, m, t, a: e + t + t, d: q + m }
+    }
+
+    /// F by r = e/(a d).
+    #[inline(always)]
+    fn fresnel(&self, r: T) -> T {
+        (self.q2 + self.m.squared()) * r.squared()
+    }
+}
+
 /// F, unitless, in [0, 1].
 ///
 /// - `e`: n² − 1 ≥ 0.
 /// - `c2`: cos²θ_a, above 0; a rounding above 1 does no harm.
 #[inline(always)]
 pub fn fresnel<T: Real>(e: T, c2: T) -> T {
-    let q2 = c2 * (e + c2);
-    let m = T::one() - c2;
-    let q = q2.sqrt();
-    let t = q + c2;
-    let r = e / ((e + t + t) * (q + m));
-    (q2 + m.squared()) * r.squared()
+    let parts = Parts::new(e, c2);
+    parts.fresnel(e / (parts.a * parts.d))
 }
 
-/// F and ∂F/∂ln e, for a fit that moves in ln e: by the amplitudes, for which one division serves both.
+/// F and ∂F/∂ln e, for a fit that moves in ln e. With q' = ∂q/∂ln e = e c²/(2q)
 ///
-/// With g = √(e + c²): r_s = e/(g + c)² and e ∂r_s/∂e = r_s c/g; r_p likewise.
+/// ```text
+/// ∂F                          ⎛ 2 (q + c² − q')    q'  ⎞
+/// ───── = 2 q q' r² + 2 F ⎜ ─────────────── − ─── ⎟      r = e/(a d)
+/// ∂ln e                       ⎝        a            d  ⎠
+/// ```
 ///
 /// - `e`: n² − 1 > 0.
-/// - `c`: cos θ_a in (0, 1].
+/// - `c2`: cos²θ_a in (0, 1].
 #[inline(never)]
-pub fn fresnel_with_log_slope<T: Real>(e: T, c: T) -> (T, T) {
-    let c2 = c.squared();
-    let g = (e + c2).sqrt();
-    let u = g + c;
-    let v = (e * c + c) + g;
-    let (u2, v2) = (u.squared(), v.squared());
-    let u2_v2 = u2 * v2;
-    let inverse = T::ONE / (u2_v2 * g);
-    let e_g_inverse = e * g * inverse;
-    let r_s = e_g_inverse * v2;
-    let q = e_g_inverse * u2;
-    let c_g = c * inverse * u2_v2;
-    let r_p = q * (e * c2 + (T::TWO * c2 - T::ONE));
-    let r_s2 = r_s.squared();
-    let f = T::HALF * (r_s2 + r_p.squared());
-    // e + 2c² − 1
-    let slope = c_g * (r_s2 + r_p * q * (e + (T::TWO * c2 - T::ONE)));
-    (f, slope)
+pub fn fresnel_with_log_slope<T: Real>(e: T, c2: T) -> (T, T) {
+    let parts = Parts::new(e, c2);
+    let Parts { q, t, a, d, .. } = parts;
+    let a_d = a * d;
+    // one division for all
+    let inverse = T::ONE / (a_d * q);
+    let inverse_a_d = inverse * q;
+    let r = e * inverse_a_d;
+    let f = parts.fresnel(r);
+    let q_q1 = T::HALF * (e * c2);
+    let q1 = q_q1 * (inverse * a_d);
+    let rest = t - q1;
+    let half = q_q1 * r.squared() + f * inverse_a_d * ((rest + rest) * d - q1 * a);
+    (f, half + half)
 }
 
 #[cfg(test)]
@@ -79,7 +106,7 @@ mod tests {
                 let expected_slope = 0.5 * (n * n - 1.0) / n * d_n;
                 let f = super::fresnel(e, c * c);
                 assert!((f / expected - 1.0).abs() < 2e-14, "{n} {c}: {f} {expected}");
-                let (f, slope) = super::fresnel_with_log_slope(e, c);
+                let (f, slope) = super::fresnel_with_log_slope(e, c * c);
                 assert!((f / expected - 1.0).abs() < 1e-10, "{n} {c}: {f} {expected}");
                 assert!((slope - expected_slope).abs() < 1e-9 * f, "{n} {c}: {slope} {expected_slope}");
             }
