@@ -161,11 +161,18 @@ struct Amplitudes<T> {
 impl<T: Real> Index<T> for Dielectric<T> {
     #[inline(always)]
     fn fresnel(self, cos_theta_a: T) -> T {
+        if T::FEWEST_OPERATIONS {
+            return squares::fresnel_anywhere(squares::excess(self.n), cos_theta_a.squared());
+        }
         self.polarized(cos_theta_a).unpolarized()
     }
 
     #[inline(always)]
     fn fresnel_with_slope(self, cos_theta_a: T) -> (T, T) {
+        if T::FEWEST_OPERATIONS {
+            let (f, by_e) = squares::fresnel_with_slope(squares::excess(self.n), cos_theta_a.squared());
+            return (f, (self.n + self.n) * by_e);
+        }
         let [f, f1, _] = self.fresnel_to_second_order(cos_theta_a);
         (f, f1)
     }

@@ -136,6 +136,10 @@ pub trait Real:
         Self::ONE
     }
 
+    /// Of two forms of an equation the one of fewer operations, for devices; else the one that results have always been computed by.
+    #[doc(hidden)]
+    const FEWEST_OPERATIONS: bool = false;
+
     /// By how much [`decay`](Self::decay) is too large: for the caller to fold into a constant of its own.
     #[doc(hidden)]
     const DECAY_GAIN: f64 = 1.0;

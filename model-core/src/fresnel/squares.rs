@@ -59,6 +59,32 @@ pub fn fresnel<T: Real>(e: T, c2: T) -> T {
     parts.fresnel(e / (parts.a * parts.d))
 }
 
+/// [`fresnel`] also where there is no surface, n = 1, at grazing incidence, c = 0: 0.
+#[inline(always)]
+pub fn fresnel_anywhere<T: Real>(e: T, c2: T) -> T {
+    let parts = Parts::new(e, c2);
+    let a_d = parts.a * parts.d;
+    parts.fresnel(if a_d > T::ZERO { e / a_d } else { T::ZERO })
+}
+
+/// The same to the last bit, and ∂F/∂e.
+#[inline(always)]
+pub fn fresnel_with_slope<T: Real>(e: T, c2: T) -> (T, T) {
+    let parts = Parts::new(e, c2);
+    let Parts { q2, q, m, t, a, d } = parts;
+    let a_d = a * d;
+    let r = if a_d > T::ZERO { e / a_d } else { T::ZERO };
+    let f = parts.fresnel(r);
+    let a_d_q = a_d * q;
+    let inverse = if a_d_q > T::ZERO { T::ONE / a_d_q } else { T::ZERO };
+    let inverse_a_d = inverse * q;
+    // ∂q/∂e
+    let q1 = T::HALF * c2 * (inverse * a_d);
+    let rest = t - e * q1;
+    let twice = rest * d * (q2 + m.squared()) * r * inverse_a_d.squared() * T::TWO - f * (q1 * a * inverse_a_d);
+    (f, c2 * r.squared() + (twice + twice))
+}
+
 /// F and ∂F/∂ln e, for a fit that moves in ln e. With q' = ∂q/∂ln e = e c²/(2q)
 ///
 /// ```text
@@ -104,7 +130,10 @@ mod tests {
                 let (expected, d_n) = Dielectric::new(n).unwrap().fresnel_with_slope(c);
                 // dn/d ln e = e/(2n)
                 let expected_slope = 0.5 * (n * n - 1.0) / n * d_n;
-                let f = super::fresnel(e, c * c);
+                let (f, by_e) = super::fresnel_with_slope(e, c * c);
+                assert!((2.0 * n * by_e - d_n).abs() < 1e-9 * f, "{n} {c}: {by_e} {d_n}");
+                assert_eq!(f, super::fresnel_anywhere(e, c * c));
+                assert_eq!(f, super::fresnel(e, c * c));
                 assert!((f / expected - 1.0).abs() < 2e-14, "{n} {c}: {f} {expected}");
                 let (f, slope) = super::fresnel_with_log_slope(e, c * c);
                 assert!((f / expected - 1.0).abs() < 1e-10, "{n} {c}: {f} {expected}");
@@ -128,9 +157,19 @@ mod tests {
     }
 
     #[test]
+    fn grazing_incidence_reflects_all_or_nothing() {
+        assert_eq!(super::fresnel_anywhere(F32(1.25), F32(0.0)).0, 1.0);
+        assert_eq!(super::fresnel_with_slope(F32(1.25), F32(0.0)), (F32(1.0), F32(0.0)));
+        assert_eq!(super::fresnel_anywhere(F32(0.0), F32(0.0)).0, 0.0);
+        assert_eq!(super::fresnel_with_slope(F32(0.0), F32(0.0)), (F32(0.0), F32(0.0)));
+    }
+
+    #[test]
     fn there_is_no_surface_at_n_1_and_every_square_of_a_cosine_gives_a_share() {
         for c2 in [1e-18_f32, 1e-9, 0.25, 1.0, 1.0 + 2.0 * f32::EPSILON] {
             assert_eq!(super::fresnel(F32(0.0), F32(c2)).0, 0.0, "{c2:e}");
+            let (_, slope) = super::fresnel_with_slope(F32(0.0), F32(c2));
+            assert_eq!(slope.0, 0.0, "{c2:e}");
             for n in INDICES {
                 let f = super::fresnel(super::excess(F32(n as f32)), F32(c2)).0;
                 assert!((0.0..=1.000_001).contains(&f), "{n} {c2:e}: {f}");

@@ -196,6 +196,7 @@ impl Real for F32 {
     fn exp(self) -> Self {
         F32(fixed::exp(self.0))
     }
+    const FEWEST_OPERATIONS: bool = true;
     const DECAY_GAIN: f64 = fixed::DECAY_GAIN;
     const DECAY_UNIT: f64 = fixed::DECAY_UNIT;
     #[inline(always)]
