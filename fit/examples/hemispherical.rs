@@ -1,7 +1,9 @@
 //! What inversions of PROSPECT recover: counts, errors, time. `cargo run --release -p leafbrdf-fit --example hemispherical [LEAVES]`
 //!
-//! Random leaves of `tests/common/random.rs`, 400–2500 nm at 1 nm, always the same ones.
+//! Random leaves of `tests/common/leaves.rs`, 400–2500 nm at 1 nm, always the same ones.
 
+#[path = "../tests/common/leaves.rs"]
+mod leaves;
 #[path = "../tests/common/random.rs"]
 mod random;
 
@@ -12,6 +14,7 @@ use leafbrdf_fit::hemispherical::{
 };
 use leafbrdf_fit::{Identifiability, Interval};
 use leafbrdf_prospect::{LeafParams, Parameter, Prospect, Version, table};
+use leaves::random_leaf;
 use random::Random;
 
 struct Simulated {
@@ -26,7 +29,7 @@ fn simulate(version: Version, leaves: usize, noise: f64) -> Vec<Simulated> {
     let mut errors = Random(1990);
     (0..leaves)
         .map(|_| {
-            let leaf = random.leaf(version);
+            let leaf = random_leaf(&mut random, version);
             let (mut reflectance, mut transmittance) = (vec![0.0; table::BANDS], vec![0.0; table::BANDS]);
             model.spectrum(&leaf, &mut reflectance, &mut transmittance).expect("a possible leaf");
             for value in reflectance.iter_mut().chain(&mut transmittance) {

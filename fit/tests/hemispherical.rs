@@ -1,6 +1,8 @@
 //! PROSPECT inverted: what comes back from spectra that the model made, and what is said where it cannot come back.
 #![cfg(feature = "std")]
 
+#[path = "common/leaves.rs"]
+mod leaves;
 #[path = "common/random.rs"]
 mod random;
 
@@ -10,6 +12,7 @@ use leafbrdf_fit::hemispherical::{
 };
 use leafbrdf_fit::{AtBound, Identifiability, Interval};
 use leafbrdf_prospect::{LeafParams, Parameter, Prospect, Version, table};
+use leaves::random_leaf;
 use random::Random;
 
 /// R and T of a leaf.
@@ -51,7 +54,7 @@ fn recovered(version: Version, leaves: usize, use_r: bool, use_t: bool) -> usize
     let mut random = Random(2005);
     (0..leaves)
         .filter(|_| {
-            let leaf = random.leaf(version);
+            let leaf = random_leaf(&mut random, version);
             let (r, t) = spectra(&model, &leaf);
             let fit = fit_leaf(&problem(model, plain(&r).filter(|_| use_r), plain(&t).filter(|_| use_t)), &options);
             let fit = fit.unwrap();
@@ -193,7 +196,7 @@ fn standard_errors_cover_the_truth_as_often_as_they_say() {
         let mut random = Random(11);
         let (mut within, mut all) = (0.0, 0.0);
         for _ in 0..300 {
-            let leaf = random.leaf(Version::D);
+            let leaf = random_leaf(&mut random, Version::D);
             let (mut r, mut t) = spectra(&model, &leaf);
             for value in r.iter_mut().chain(&mut t) {
                 *value += 0.003 * random.normal();
