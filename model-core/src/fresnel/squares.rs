@@ -3,9 +3,9 @@
 //! With q = c √(e + c²) and m = 1 − c² = sin²θ_a the two amplitudes of `fresnel.rs` are
 //!
 //! ```text
-//!             e                 q − m                         q² + m²    ⎛           e            ⎞²
-//! r_s = ─────────────    r_p = ─────── r_s    so that    F = ───────── · ⎜ ────────────────────── ⎟
-//!       e + 2 (q + c²)          q + m                                    ⎝ (e + 2 (q + c²))(q + m) ⎠
+//!             e                 q − m                                ⎛           e            ⎞²
+//! r_s = ─────────────    r_p = ─────── r_s   so that   F = (q² + m²) ⎜ ────────────────────── ⎟
+//!       e + 2 (q + c²)          q + m                                ⎝ (e + 2 (q + c²))(q + m) ⎠
 //! ```
 //!
 //! which nothing cancels in, and c itself does not stand in.
@@ -88,9 +88,9 @@ pub fn fresnel_with_slope<T: Real>(e: T, c2: T) -> (T, T) {
 /// F and ∂F/∂ln e, for a fit that moves in ln e. With q' = ∂q/∂ln e = e c²/(2q)
 ///
 /// ```text
-/// ∂F                          ⎛ 2 (q + c² − q')    q'  ⎞
-/// ───── = 2 q q' r² + 2 F ⎜ ─────────────── − ─── ⎟      r = e/(a d)
-/// ∂ln e                       ⎝        a            d  ⎠
+/// ∂F                        ⎛ 2 (q + c² − q')    q'  ⎞
+/// ───── = 2 q q' r² + 2 F · ⎜ ─────────────── − ──── ⎟      r = e/(a d)
+/// ∂ln e                     ⎝        a            d  ⎠
 /// ```
 ///
 /// - `e`: n² − 1 > 0.
