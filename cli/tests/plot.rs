@@ -174,6 +174,17 @@ fn a_surface_with_other_facets_and_a_tilt_is_drawn_as_it_was_fitted() {
 }
 
 #[test]
+fn another_leafs_measurement_is_noticed() {
+    let study = Study::new(&["beech"], &["--model", "surface"]);
+    let other = study.measurement("hazel");
+    succeed(&["simulate", "--leaf", "hazel", "--seed", "1", "--wavelengths", "480:880:50", "-o", &other]);
+    let message = |arguments: &[&str]| String::from_utf8(leafbrdf(arguments).stderr).unwrap();
+    assert_eq!(message(&["plot", &study.fit(), "--svg"]), "");
+    let wrong = message(&["plot", &study.fit(), "--svg", "--measurement", &other]);
+    assert!(wrong.contains("another leaf's") && wrong.contains("beech"), "{wrong}");
+}
+
+#[test]
 fn without_the_measurement_the_rest_is_drawn_and_the_remedy_told() {
     let study = Study::new(&["beech"], &["--model", "bands"]);
     let moved = study.at("elsewhere.csv");
