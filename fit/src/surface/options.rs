@@ -139,7 +139,7 @@ impl SurfaceOptions {
         self
     }
 
-    /// Are the bounds a box inside the model's domain? [`fit_surface`] asks before it starts.
+    /// Are the bounds a box inside the model's domain? [`fit_surface`](super::fit_surface) asks before it starts.
     ///
     /// # Errors
     /// [`FitError::Bounds`].
