@@ -584,3 +584,39 @@ fn standard_errors_are_those_of_a_differenced_jacobian() {
     }
     assert!(Dielectric::new(fit.parameters[1]).is_ok());
 }
+
+/// The least cost inside a small box is a least one along each of its edges: where n or σ is held, letting it go lowers nothing.
+#[test]
+fn nothing_is_held_on_a_bound_that_the_data_do_not_press_it_against() {
+    let directions = hemisphere(30.0);
+    let mut random = Random(6);
+    let mut held = 0;
+    for _ in 0..6000 {
+        let y = brdf(&directions, truth(&mut random), Normalization::Bousquet2005);
+        let (n, sigma) = (random.uniform(1.05, 2.0), random.uniform(0.02, 0.5));
+        let bounds = BandBounds {
+            n: Interval::new(n, n + random.uniform(0.01, 2.0)),
+            sigma: Interval::new(sigma, sigma + random.uniform(0.01, 0.5)),
+            ..BandBounds::table_3()
+        };
+        let band = BandOptions { bounds, ..BandOptions::table_3() };
+        let fit = fit_one(&directions, &y, &LeafBandsOptions { band, ..LeafBandsOptions::default() });
+        for (p, interval) in [(1, bounds.n), (2, bounds.sigma)] {
+            let width = interval.upper - interval.lower;
+            let near = (fit.parameters[p] - interval.lower).min(interval.upper - fit.parameters[p]) < 1e-4 * width;
+            held += u32::from(near);
+            let inwards = if fit.parameters[p] - interval.lower < 0.5 * width { width } else { -width };
+            for share in [1e-3, 1e-2] {
+                let mut moved = fit.parameters;
+                moved[p] += share * inwards;
+                let lobe = brdf(&directions, [0.0, moved[1], moved[2]], Normalization::Bousquet2005);
+                let rest = lobe.iter().zip(&y).map(|(s, y)| y - s).sum::<f64>() / y.len() as f64;
+                moved[0] = (core::f64::consts::PI * rest).clamp(0.01, 0.99);
+                let there = chi2(&directions, &y, moved, Normalization::Bousquet2005);
+                // 1e-6 of χ²: what the search promises
+                assert!(!near || there > fit.chi2 * (1.0 - 1e-6), "{p} {share} {fit:?} {bounds:?}: {there}");
+            }
+        }
+    }
+    assert!(held > 5000, "{held}");
+}
