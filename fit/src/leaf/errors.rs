@@ -8,7 +8,7 @@ use super::error::LeafError;
 use super::parameters::{COUNT, Treatment};
 use super::report::Knowledge;
 use crate::bounds::AtBound;
-use crate::matrix::form;
+use crate::matrix::{eigen, form};
 
 /// Errors of the free parameters of one search.
 #[derive(Clone, Debug)]
@@ -109,51 +109,43 @@ pub(super) fn errors(
         (true, _) => Knowledge::AtBound,
     });
     let free: Vec<usize> = (0..COUNT).filter(|&i| knowledge[i] == Knowledge::Identified).collect();
-    let mut matrix: Vec<Vec<f64>> = free.iter().map(|&i| free.iter().map(|&j| normal.matrix[i][j]).collect()).collect();
+    // scaled to unit diagonal; rows and columns of what is not free are those of the identity
     let mut prior_precision = [0.0; COUNT];
-    for (row, &i) in free.iter().enumerate() {
+    let mut scale = [0.0; COUNT];
+    for &i in &free {
         if let Some(prior) = cost.priors[i] {
             prior_precision[i] = cost.prior_weight * prior.misfit(x[i]).1.powi(2);
-            matrix[row][row] += prior_precision[i];
         }
+        scale[i] = (normal.matrix[i][i] + prior_precision[i]).max(0.0).sqrt();
     }
-    let scale: Vec<f64> = (0..free.len()).map(|i| matrix[i][i].max(0.0).sqrt()).collect();
-    let scaled: Vec<Vec<f64>> = (0..free.len())
-        .map(|i| {
-            let of = |j: usize| {
-                let size = scale[i] * scale[j];
-                if size > 0.0 { matrix[i][j] / size } else { f64::from(u8::from(i == j)) }
-            };
-            (0..free.len()).map(of).collect()
+    let scaled: [[f64; COUNT]; COUNT] = core::array::from_fn(|i| {
+        core::array::from_fn(|j| {
+            let size = scale[i] * scale[j];
+            if i != j && size > 0.0 { normal.matrix[i][j] / size } else { f64::from(u8::from(i == j)) }
         })
-        .collect();
-    let (values, vectors) = eigen(scaled);
+    });
+    let (values, vectors) = eigen(&scaled);
     let largest = values.iter().copied().fold(0.0, f64::max);
     let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
     // rounding of the normal matrix
     let least = 1e-13 * largest;
-    let mut inverse = vec![vec![0.0; free.len()]; free.len()];
-    for (value, vector) in values.iter().zip(&vectors) {
-        if *value > least {
-            for i in 0..free.len() {
-                for j in 0..free.len() {
-                    inverse[i][j] += vector[i] * vector[j] / value;
-                }
-            }
-        } else {
-            for (i, v) in vector.iter().enumerate() {
-                if v * v > 1e-3 {
-                    knowledge[free[i]] = Knowledge::NotIdentifiable;
-                }
-            }
-        }
-    }
     // A⁻¹; 0 for what is not free
     let mut a_inverse = [[0.0; COUNT]; COUNT];
-    for (row, &i) in free.iter().enumerate() {
-        for (column, &j) in free.iter().enumerate() {
-            let size = scale[row] * scale[column];
-            a_inverse[i][j] = if size > 0.0 { inverse[row][column] / size } else { 0.0 };
+    for (place, value) in values.iter().enumerate() {
+        for &i in &free {
+            let v = vectors[i][place];
+            if !(*value > least) {
+                if v * v > 1e-3 {
+                    knowledge[i] = Knowledge::NotIdentifiable;
+                }
+                continue;
+            }
+            for &j in &free {
+                let size = scale[i] * scale[j];
+                if size > 0.0 {
+                    a_inverse[i][j] += v * vectors[j][place] / (value * size);
+                }
+            }
         }
     }
     let Freedom { factor, correlated } = match variance {
@@ -204,7 +196,7 @@ pub(super) fn errors(
     }
     let mut prior_share = [0.0; COUNT];
     for &i in &free {
-        if scale[free.iter().position(|&other| other == i).unwrap_or(0)] == 0.0 {
+        if scale[i] == 0.0 {
             knowledge[i] = Knowledge::NotIdentifiable;
         }
         if prior_precision[i] > 0.0 {
@@ -233,46 +225,6 @@ pub(super) fn errors(
 
 /// More than this share of its prior variance left: the data have said next to nothing.
 const PRIOR_ONLY: f64 = 0.9;
-
-/// Eigenvalues and -vectors of a small symmetric matrix, by Jacobi's rotations.
-fn eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
-    let n = a.len();
-    let mut vectors: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();
-    for _ in 0..60 {
-        let off: f64 = (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| a[i][j] * a[i][j]).sum();
-        if off < 1e-30 {
-            break;
-        }
-        for p in 0..n {
-            for q in p + 1..n {
-                if a[p][q].abs() < 1e-300 {
-                    continue;
-                }
-                let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
-                let t = if theta == 0.0 { 1.0 } else { t };
-                let c = 1.0 / (t * t + 1.0).sqrt();
-                let s = t * c;
-                for k in 0..n {
-                    let (x, y) = (a[k][p], a[k][q]);
-                    (a[k][p], a[k][q]) = (c * x - s * y, s * x + c * y);
-                }
-                for k in 0..n {
-                    let (x, y) = (a[p][k], a[q][k]);
-                    (a[p][k], a[q][k]) = (c * x - s * y, s * x + c * y);
-                }
-                for vector in &mut vectors {
-                    let (x, y) = (vector[p], vector[q]);
-                    (vector[p], vector[q]) = (c * x - s * y, s * x + c * y);
-                }
-            }
-        }
-    }
-    let values = (0..n).map(|i| a[i][i]).collect();
-    // column i of the rotations belongs to value i
-    let columns = (0..n).map(|i| vectors.iter().map(|row| row[i]).collect()).collect();
-    (values, columns)
-}
 
 /// The spectrum of k_L with errors, and the misfit wavelength by wavelength.
 pub(super) struct Spectrum {
@@ -343,19 +295,6 @@ pub(super) fn diffuse_errors(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn eigenvectors_rebuild_their_matrix() {
-        let a = vec![vec![2.0, -0.3, 0.1], vec![-0.3, 1.0, 0.7], vec![0.1, 0.7, 0.5]];
-        let (values, vectors) = eigen(a.clone());
-        for i in 0..3 {
-            for j in 0..3 {
-                let rebuilt: f64 = values.iter().zip(&vectors).map(|(value, v)| value * v[i] * v[j]).sum();
-                assert!((rebuilt - a[i][j]).abs() < 1e-14);
-            }
-        }
-        assert!((values.iter().sum::<f64>() - 3.5).abs() < 1e-14);
-    }
 
     #[test]
     fn alternating_residuals_count_each_and_smooth_ones_as_few() {

@@ -1,7 +1,7 @@
 //! Small symmetric matrices over the surface's parameters.
 
 use super::super::model::PARAMETERS;
-pub(super) use crate::matrix::{dot, form, product, transposed};
+pub(super) use crate::matrix::{dot, eigen, form, product, transposed};
 
 /// A matrix over all parameters; rows and columns of those that are not asked for are left alone.
 pub(super) type Matrix = [[f64; PARAMETERS]; PARAMETERS];
@@ -27,44 +27,6 @@ pub(super) fn condition(m: &Matrix, inverse: &Matrix) -> f64 {
         length
     };
     largest(m) * largest(inverse)
-}
-
-/// Eigenvalues of a symmetric matrix, and the eigenvectors as columns: Jacobi's rotations, until the off-diagonal is rounding.
-pub(super) fn eigen(m: &Matrix) -> (Vector, Matrix) {
-    let mut a = *m;
-    let mut vectors = ZERO;
-    for (i, row) in vectors.iter_mut().enumerate() {
-        row[i] = 1.0;
-    }
-    // convergence is quadratic: 7 × 7 takes about six sweeps
-    for _ in 0..30 {
-        let mut rotated = false;
-        for p in 0..PARAMETERS {
-            for q in (p + 1)..PARAMETERS {
-                if a[p][q].abs() <= f64::EPSILON * (a[p][p] * a[q][q]).abs().sqrt() {
-                    continue;
-                }
-                rotated = true;
-                let theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
-                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
-                let c = 1.0 / (t * t + 1.0).sqrt();
-                let s = t * c;
-                for row in &mut a {
-                    (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
-                }
-                for k in 0..PARAMETERS {
-                    (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
-                }
-                for row in &mut vectors {
-                    (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
-                }
-            }
-        }
-        if !rotated {
-            break;
-        }
-    }
-    (core::array::from_fn(|i| a[i][i]), vectors)
 }
 
 /// Coordinates in which what the data tell is the same in every direction: A⁺ = down·downᵀ, A = up·upᵀ, downᵀ·up the projector.
@@ -112,21 +74,6 @@ mod tests {
         let x: [[f64; PARAMETERS]; 9] =
             core::array::from_fn(|v| core::array::from_fn(|i| ((v * v + 3 * i * v + i) as f64).sin() + 0.2 * i as f64));
         core::array::from_fn(|i| core::array::from_fn(|k| x.iter().map(|row| row[i] * row[k]).sum()))
-    }
-
-    #[test]
-    fn eigenvectors_are_orthonormal_and_rebuild_the_matrix() {
-        let m = example();
-        let (values, u) = eigen(&m);
-        let rebuilt = |i: usize, k: usize| (0..PARAMETERS).map(|a| u[i][a] * values[a] * u[k][a]).sum::<f64>();
-        let gram = |i: usize, k: usize| (0..PARAMETERS).map(|a| u[a][i] * u[a][k]).sum::<f64>();
-        let size = values.iter().fold(0.0, |most: f64, value| most.max(*value));
-        for i in 0..PARAMETERS {
-            for k in 0..PARAMETERS {
-                assert!((rebuilt(i, k) - m[i][k]).abs() < 1e-13 * size);
-                assert!((gram(i, k) - f64::from(u8::from(i == k))).abs() < 1e-14);
-            }
-        }
     }
 
     #[test]
