@@ -182,6 +182,16 @@ fn results_stay_inside_the_bounds_and_bounds_are_reported() {
     }
 }
 
+/// Bounds of n and σ that a random leaf is mostly outside of.
+fn small_box(random: &mut Random) -> BandBounds<f64> {
+    let (n, sigma) = (random.uniform(1.05, 2.0), random.uniform(0.02, 0.5));
+    BandBounds {
+        n: Interval::new(n, n + random.uniform(0.01, 2.0)),
+        sigma: Interval::new(sigma, sigma + random.uniform(0.01, 0.5)),
+        ..BandBounds::table_3()
+    }
+}
+
 /// In small boxes without noise, where the scan's corner is the minimum to the last digit: n or σ on its bound is held there.
 #[test]
 fn what_sits_on_a_bound_is_reported_there_in_corners_too() {
@@ -190,12 +200,7 @@ fn what_sits_on_a_bound_is_reported_there_in_corners_too() {
     let mut corners = 0;
     for _ in 0..2000 {
         let y = brdf(&directions, truth(&mut random), Normalization::Bousquet2005);
-        let (n, sigma) = (random.uniform(1.05, 2.0), random.uniform(0.02, 0.5));
-        let bounds = BandBounds {
-            n: Interval::new(n, n + random.uniform(0.01, 2.0)),
-            sigma: Interval::new(sigma, sigma + random.uniform(0.01, 0.5)),
-            ..BandBounds::table_3()
-        };
+        let bounds = small_box(&mut random);
         let band = BandOptions { bounds, ..BandOptions::table_3() };
         let fit = fit_one(&directions, &y, &LeafBandsOptions { band, ..LeafBandsOptions::default() });
         let on = [(1, bounds.n), (2, bounds.sigma)].map(|(p, interval)| {
@@ -593,12 +598,7 @@ fn nothing_is_held_on_a_bound_that_the_data_do_not_press_it_against() {
     let mut held = 0;
     for _ in 0..6000 {
         let y = brdf(&directions, truth(&mut random), Normalization::Bousquet2005);
-        let (n, sigma) = (random.uniform(1.05, 2.0), random.uniform(0.02, 0.5));
-        let bounds = BandBounds {
-            n: Interval::new(n, n + random.uniform(0.01, 2.0)),
-            sigma: Interval::new(sigma, sigma + random.uniform(0.01, 0.5)),
-            ..BandBounds::table_3()
-        };
+        let bounds = small_box(&mut random);
         let band = BandOptions { bounds, ..BandOptions::table_3() };
         let fit = fit_one(&directions, &y, &LeafBandsOptions { band, ..LeafBandsOptions::default() });
         for (p, interval) in [(1, bounds.n), (2, bounds.sigma)] {
