@@ -183,8 +183,7 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
     let starts = starts(options, &treatments, &surfaces);
     // what no wavelength sees at all is held where it starts
     let mut blind = [false; COUNT];
-    let mut found = Found::default();
-    {
+    let found = {
         let problem = Part::new(leaf, options, &thin)?;
         let model = problem.model(options, surface, scaled_index)?;
         let residuals = ResidualModel::white(1.0);
@@ -203,10 +202,8 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
             }
         }
         let mut cost = Cost::new(model, problem.measured(), &residuals, &treatments, prior_weight);
-        for start in &starts {
-            found.add(cost.search(start, options.tolerance, options.max_iterations), &cost);
-        }
-    }
+        search_from(&mut cost, &starts, options)
+    };
     let best = found.best.ok_or(LeafError::Model)?;
     let all: Vec<usize> = (0..leaf.bands.len()).collect();
     let problem = Part::new(leaf, options, &all)?;
@@ -215,8 +212,8 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
     let mut starts = vec![best.x];
     // the runner-up too: costs of some bands and of all are not to be compared
     starts.extend(found.second.filter(|second| second.cost < 2.0 * best.cost).map(|second| second.x));
-    let mut iterations = found.iterations;
-    let mut whole = from(&mut cost, &starts, options, &mut iterations);
+    let mut whole = search_from(&mut cost, &starts, options);
+    let mut iterations = found.iterations + whole.iterations;
     let mut at = whole.best.ok_or(LeafError::Model)?;
     if treatments.iter().any(|one| one.prior().is_some()) {
         // a prior is weighed against what this model leaves over: more than the surface did with k_L free
@@ -227,7 +224,8 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
             }
             cost.prior_weight = own;
             let starts: Vec<_> = [Some(at), whole.second].into_iter().flatten().map(|at| at.x).collect();
-            whole = from(&mut cost, &starts, options, &mut iterations);
+            whole = search_from(&mut cost, &starts, options);
+            iterations += whole.iterations;
             at = whole.best.ok_or(LeafError::Model)?;
         }
     }
@@ -294,12 +292,11 @@ pub(super) fn fit(leaf: &Leaf<'_>, options: &LeafOptions) -> Result<LeafFit, Lea
 const REWEIGHED: u32 = 6;
 
 /// One search from each start.
-fn from(cost: &mut Cost<'_>, starts: &[[f64; COUNT]], options: &LeafOptions, iterations: &mut u32) -> Found {
+fn search_from(cost: &mut Cost<'_>, starts: &[[f64; COUNT]], options: &LeafOptions) -> Found {
     let mut found = Found::default();
     for start in starts {
         found.add(cost.search(start, options.tolerance, options.max_iterations), cost);
     }
-    *iterations += found.iterations;
     found
 }
 
